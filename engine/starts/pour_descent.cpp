@@ -51,6 +51,10 @@ std::optional<Vec3> slide(Vec3 a, Vec3 b, double slack) {
   const double ga = dot(downward, a), gb = dot(downward, b);
   const double push_a = (gb * ab - ga) / determinant, push_b = (ga * ab - gb) / determinant;
   const Vec3 motion = downward + push_a * a + push_b * b;
+  // The line along both surfaces, level but for the rounding of `motion`: two contacts that face
+  // each other, such as a wall and a sphere at the same height, make much of it.
+  const Vec3 line = cross(a, b);
+  if (line.z * line.z < still * norm_squared(line)) return std::nullopt;
   const double least = -no_push - slack;
   if (push_a < least || push_b < least || norm_squared(motion) < still) return std::nullopt;
   return motion;
@@ -129,10 +133,28 @@ std::optional<Turn> other_turn(const PourBed& bed, Vec3 p, const std::vector<Obs
   }
 }
 
+constexpr double least_push = 1e-9;  // push of a carrying contact, in weights
+
+// True if three of these contacts enclose the vertical: each of them pushes.
+bool carried(const std::vector<Vec3>& outwards) {
+  for (std::size_t i = 0; i < outwards.size(); ++i) {
+    for (std::size_t j = i + 1; j < outwards.size(); ++j) {
+      const Vec3 ab = cross(outwards[i], outwards[j]);
+      for (std::size_t k = j + 1; k < outwards.size(); ++k) {
+        const Vec3 bc = cross(outwards[j], outwards[k]), ca = cross(outwards[k], outwards[i]);
+        const double volume = dot(outwards[i], bc);
+        if (std::abs(volume) > 1e-9 && bc.z / volume > least_push && ca.z / volume > least_push &&
+            ab.z / volume > least_push)
+          return true;
+      }
+    }
+  }
+  return false;
+}
+
 // Moves p onto the three contacts that carry the sphere, as near as rounding allows without an
 // overlap.
 Vec3 polished(Vec3 p, const std::vector<Obstacle>& contacts, double unit) {
-  constexpr double least_push = 1e-9;
   const double rounding = 4.4e-16 * (unit + std::abs(p.x) + std::abs(p.y) + p.z);
   const auto excess = [&](const Obstacle& contact, Vec3 at) {
     return gap(contact, at) - (contact.kind == Obstacle::Kind::wall ? 0 : rounding);
@@ -236,6 +258,8 @@ std::optional<Vec3> descend(const PourBed& bed, Vec3 p) {
       next = other_turn(bed, p, contacts, outwards).value_or(*next);
     if (!next) return std::nullopt;
     if (next->rests) return at_rest(bed, next->p);
+    // A slope within the tolerance of steer(), against what holds the sphere.
+    if (next->p == p && carried(outwards)) return at_rest(bed, polished(p, contacts, unit));
     p = next->p;
   }
   return std::nullopt;

@@ -147,6 +147,25 @@ TEST_CASE("Pours work in every legal width, however narrow") {
   }
 }
 
+TEST_CASE(
+    "Slits and tubes one to two diameters wide have a place for every sphere, whatever the key") {
+  // A sphere can come to rest between a side and a sphere at its own height, but for rounding.
+  std::vector<Container> narrow = {Plates{3, 1}, Plates{5, 1}, Plates{5, 1.5}, WalledBox{2.5, 1}};
+  for (const double width : {1.0, 1 + 1e-9, 1.0001, 1.01, 1.2, 1.5, 1.7, 2.0}) {
+    for (const double length : {3.0, 5.0, 5.5}) narrow.emplace_back(WalledBox{width, length});
+    if (width > 1.00001) narrow.emplace_back(Cylinder{width});  // else one column
+  }
+  for (const Container& container : narrow) {
+    CAPTURE(Boundary(container).width_x, Boundary(container).width_y);
+    for (std::uint64_t key = 0; key < 10; ++key) {
+      CAPTURE(key);
+      const Packing packing = poured(container, 300, 0, key);
+      CHECK(deepest_overlap(packing).depth <= 1e-12);
+      CHECK(unsupported(packing) == 0);
+    }
+  }
+}
+
 TEST_CASE("A tube and a box of width 1 hold a single column") {
   for (const Container& container : {Container{Cylinder{1}}, Container{WalledBox{1, 1}}}) {
     const Packing packing = poured(container, 50, 0);
