@@ -188,10 +188,8 @@ std::string estimate_text(const Estimate& estimate) {
   if (!estimate.has_value()) return "-";
   if (!estimate.intervals[0].closed()) return number(estimate.value, 4) + ", error unknown";
   const double half = estimate.half_width();
-  // Half a lopsided interval would reach beyond what 95 % allow on its shorter side.
   const Interval &middle = estimate.intervals[0], &wide = estimate.intervals[1];
-  const bool lopsided = estimate.value - half < wide.lower || estimate.value + half > wide.upper;
-  if (lopsided && middle.lower < estimate.value && estimate.value < middle.upper)
+  if (is_lopsided(estimate.value, middle.lower, middle.upper, wide.lower, wide.upper))
     return value_with_limits(estimate.value, middle.lower, middle.upper);
   return value_with_error(estimate.value, half);
 }

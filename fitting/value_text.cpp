@@ -57,6 +57,13 @@ std::string number_text(double value, int digits) {
   return in_format(value, std::chars_format::general, digits);
 }
 
+bool is_lopsided(double value, double low, double high, double least, double most) {
+  if (!(low < value && value < high)) return false;
+  const double half = (high - low) / 2;
+  const bool crosses_zero = (low >= 0 && value < half) || (high <= 0 && value > -half);
+  return value - half < least || value + half > most || crosses_zero;
+}
+
 std::string limits_text(double low, double high, int digits) {
   const bool from = std::isfinite(low), to = std::isfinite(high);
   if (from && to) return number_text(low, digits) + " to " + number_text(high, digits);

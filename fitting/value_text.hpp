@@ -17,6 +17,11 @@ std::string value_with_error(double value, double error, double scale = 1);
 /// digits. Requires finite numbers, low < value < high.
 std::string value_with_limits(double value, double low, double high);
 
+/// True if half of the interval [low, high] on both sides of the value would reach beyond the wider
+/// limits [least, most], or to the other side of zero, where the interval is on one: the value is
+/// then printed with both distances. NaN and infinite limits limit nothing.
+bool is_lopsided(double value, double low, double high, double least, double most);
+
 /// Range of a value: "0.57 to 0.61" with so many digits, "> 0.57", "< 0.61", or "no limit" where
 /// neither end is finite.
 std::string limits_text(double low, double high, int digits);

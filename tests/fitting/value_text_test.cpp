@@ -47,6 +47,17 @@ TEST_CASE("a lopsided interval is given by both of its distances") {
   CHECK(value_with_limits(3e8, 2e8, 9e8) == "3e+08(+6e+08/-1e+08)");
 }
 
+TEST_CASE("an interval is lopsided where half of it would reach beyond limits or zero") {
+  CHECK(is_lopsided(56, 45, 74, 43, 3588));
+  CHECK_FALSE(is_lopsided(56, 45, 70, 40, 90));
+  // A time of 0.1 to 6.4 is positive, also without a lower limit at 95 %.
+  CHECK(is_lopsided(2.2, 0.1, 6.4, nan, 13));
+  CHECK(is_lopsided(2.2, 0, 6.4, -infinity, infinity));
+  CHECK(is_lopsided(-2.2, -6.4, -0.1, -infinity, infinity));
+  CHECK_FALSE(is_lopsided(2.2, -0.1, 6.4, -infinity, infinity));
+  CHECK_FALSE(is_lopsided(2.2, 2.2, 2.2, -infinity, infinity));  // fixed
+}
+
 TEST_CASE("an error may be larger than its value, which may be negative") {
   CHECK(value_with_error(0.3, 1.2) == "0.3(1.2)");
   CHECK(value_with_error(-0.31, 0.12) == "-0.31(12)");
