@@ -1,5 +1,6 @@
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "engine/numbers.hpp"
 #include "structure/measure_parts.hpp"
@@ -7,13 +8,25 @@
 
 namespace jostle::inline structure {
 
+namespace {
+
+// Ratios of variances of fewer clusters are too low on average: between sides 3 to 4 apart a
+// packing has two to seven whole cells.
+constexpr std::uint64_t least_clusters = 10;
+
+}  // namespace
+
 Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) {
   const VoronoiCells& cells = in.voronoi();
   const ClusterVolumes found =
       cluster_volumes(in.packing, cells, static_cast<std::uint32_t>(settings.largest),
                       [&](std::uint32_t i) { return in.in_region(i); });
-  if (found.clusters.empty() || found.clusters.front() < 2)
-    throw std::invalid_argument("fewer than two whole cells lie in the region");
+  const std::uint64_t whole = found.clusters.empty() ? 0 : found.clusters.front();
+  if (whole < 2) {
+    throw std::invalid_argument("whole cells in the region: " + std::to_string(whole) +
+                                "; a variance needs 2: use a larger region, a wider container or "
+                                "more spheres");
+  }
   std::vector<double> n, per_cell, relative, chi, independent, clusters;
   for (std::size_t k = 0; k < found.cells.size(); ++k) {
     n.push_back(found.cells[k]);
@@ -23,7 +36,8 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
     };
     per_cell.push_back(varying(found.variance[k], found.mean[k]) / n.back() / independent.back());
     const double of_members = varying(found.of_members[k], found.mean[k] / n.back());
-    relative.push_back(of_members > 0 ? per_cell.back() / of_members : not_a_number);
+    const bool has_ratio = of_members > 0 && found.clusters[k] >= least_clusters;
+    relative.push_back(has_ratio ? per_cell.back() / of_members : not_a_number);
     chi.push_back(per_cell.back() / (found.mean[k] / n.back() - 1 - least_free_volume));
     clusters.push_back(static_cast<double>(found.clusters[k]));
   }
@@ -46,7 +60,7 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
        .long_name =
            "variance of the volume of a cluster over its cells and over shared_cells, over that of "
            "the single cells it is of: 1 where cells are independent, no value where they do not "
-           "vary",
+           "vary, or of fewer than 10 clusters",
        .beyond = not_a_number},
       {.name = "shared_cells",
        .places = "cells",

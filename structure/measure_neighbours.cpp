@@ -224,6 +224,39 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
   return out;
 }
 
+namespace {
+
+/// Spheres of the region, and how many of them have sides within 3/2: sites of neighbours at
+/// contact lie beyond these sides, and what begins there is no bulk.
+void add_nearness(const MeasuredPacking& in, Measurement& out) {
+  Region inner = in.region;
+  inner.from_sides = 3 * sphere_radius;
+  double spheres = 0, near = 0;
+  for (std::size_t i = 0; i < in.packing.centres.size(); ++i) {
+    if (!in.in_region(i)) continue;
+    ++spheres;
+    near += inner.contains(in.packing.container, in.packing.centres[i]) ? 0 : 1;
+  }
+  out.quantities.push_back({.name = "n_spheres",
+                            .values = {spheres},
+                            .long_name = "spheres of the region",
+                            .with_error = false});
+  out.quantities.push_back({.name = "near_sides",
+                            .values = {near / spheres},
+                            .long_name = "fraction of them less than 3/2 from a side, beyond which "
+                                         "sites of their neighbours lie",
+                            .with_error = false});
+  if (near > 0.5 * spheres) {
+    out.notes.emplace_back(
+        "sides",
+        "most spheres of the region are less than 3/2 from a side and have no neighbours beyond "
+        "it: crystals that do not begin at the side count as disordered, and q6 of gases is up to "
+        "7 % too small");
+  }
+}
+
+}  // namespace
+
 Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
   require_height_bins(in.packing, settings.bin_width);
   const NeighbourTable nearest = nearest_neighbours(in.packing);
@@ -271,6 +304,7 @@ Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
          .long_name = "height up to which half of the spheres, layer by layer, are fcc or hcp",
          .source = stukowski});
   }
+  add_nearness(in, out);
   return out;
 }
 

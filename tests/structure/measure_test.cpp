@@ -5,11 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/bed/boundary.hpp"
+#include "engine/bed/geometry.hpp"
 #include "engine/bed/slab.hpp"
 #include "reference_deposit.hpp"
 #include "structure/density/profiles.hpp"
 #include "structure/voids/pores.hpp"
 #include "structure/voids/voronoi.hpp"
+#include "tests/structure/random_points.hpp"
 
 using namespace jostle;
 
@@ -63,6 +66,18 @@ Packing fcc() {
     if ((x + y + z) % 2 == 0) packing.centres.push_back({x * a / 2, y * a / 2, z * a / 2});
   }
   return packing;
+}
+
+/// The first points that are at least 0.7 apart, at most so many.
+Packing spread(const Packing& all, std::size_t most) {
+  Packing kept{all.container, {}};
+  for (const Vec3& r : all.centres) {
+    const bool is_free = std::ranges::none_of(kept.centres, [&](Vec3 other) {
+      return norm_squared(separation(Boundary(all.container), r, other)) < 0.49;
+    });
+    if (is_free && kept.centres.size() < most) kept.centres.push_back(r);
+  }
+  return kept;
 }
 
 }  // namespace
@@ -277,4 +292,37 @@ TEST_CASE("Spheres without twelve others have no bond order, whatever images the
   // A crystal in a box narrower than four spheres still has its own.
   const Measurement crystal = part(measure(fcc(), settings, points), "order");
   CHECK(single(crystal, "q6") == Approx(0.57452426).epsilon(1e-7));
+}
+
+TEST_CASE("Between close sides order says so, and ratios of few clusters have no value") {
+  StructureSettings settings;
+  settings.order.emplace();
+  settings.clusters.emplace();
+  const auto measured = [&](const Container& container) {
+    const double area = footprint_area(Boundary(container), 0.5);
+    const auto n = static_cast<unsigned>(area * 19 * 1.2);
+    return measure(spread(random_points(container, 20, 4 * n), n), settings, points);
+  };
+  const std::vector<Measurement> periodic = measured(PeriodicBox{6, 6});
+  CHECK(single(part(periodic, "order"), "near_sides") == 0);
+  CHECK(part(periodic, "order").notes.empty());
+  const double bulk = single(part(periodic, "order"), "q6");
+  for (const Container& container :
+       {Container{WalledBox{3.2, 3.2}}, Container{WalledBox{4, 3.5}}, Container{Cylinder{4.5}}}) {
+    const std::vector<Measurement> all = measured(container);
+    const Measurement& order = part(all, "order");
+    CHECK(single(order, "near_sides") > 0.5);
+    REQUIRE(order.notes.size() == 1);
+    CHECK(order.notes[0].first == "sides");
+    // The note's 7 %; 3 errors of the few spheres.
+    const double spheres = single(order, "n_spheres");
+    CHECK(single(order, "q6") ==
+          Approx(0.965 * bulk).margin(0.035 * bulk + 0.3 / std::sqrt(spheres)));
+    const Measurement& clusters = part(all, "clusters");
+    if (!clusters.refused.empty()) continue;
+    for (std::size_t k = 0; k < along(clusters, "n_clusters").size(); ++k) {
+      if (along(clusters, "n_clusters")[k] >= 10) continue;
+      CHECK(std::isnan(along(clusters, "relative_variance")[k]));
+    }
+  }
 }
