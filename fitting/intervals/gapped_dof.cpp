@@ -29,9 +29,9 @@ double noise_memory(const Curve& curve) {
   double products = 0, squares = 0, pairs = 0;
   for (std::size_t r = 0; r < m; ++r) {
     const auto noise = [&](std::size_t i) {
-      double present = 0;
-      for (std::size_t other = 0; other < m; ++other) present += curve.present[i * m + other];
-      return (curve.values[i * m + r] - curve.x[i] - curve.offsets[r]) * present;
+      double others = -1;
+      for (std::size_t other = 0; other < m; ++other) others += curve.present[i * m + other];
+      return (curve.values[i * m + r] - curve.x[i] - curve.offsets[r]) * others;
     };
     for (std::size_t i = 1; i < n; ++i) {
       if (curve.present[(i - 1) * m + r] == 0 || curve.present[i * m + r] == 0) continue;
@@ -77,7 +77,8 @@ double gapped_dof(const Eigen::MatrixXd& jacobian, const Curve& curve) {
       offset_gain += g;
       for (std::size_t r = 0; r < m; ++r) {
         changes[r] += g * (curve.values[i * m + r] - curve.x[i]);
-        if (curve.present[i * m + r] != 0) shares[r][i] = g / present;
+        // The change of the mean where it is left out, as in the errors.
+        if (curve.present[i * m + r] != 0) shares[r][i] = g / (present - 1);
       }
     }
     for (std::size_t r = 0; r < m; ++r) noise[r] = variance_of_sum(shares[r], memory);

@@ -100,8 +100,52 @@ TEST_CASE("Pseudo-values scatter as the mean is uncertain: 400 layouts with gaps
   }
   for (std::size_t i = 0; i < n; ++i) {
     CAPTURE(i);
-    // The variance of 400 squares has a relative error of sqrt(2/400); 4 of them.
-    CHECK(predicted[i] / squares[i] == Approx(1).margin(4 * std::sqrt(2.0 / layouts)));
+    // The variance of 400 squares has a relative error of sqrt(2/400); 4 of them. Leaving out one
+    // of k present among m counts white noise up to k (m - 1)/(m (k - 1)) times.
+    const double margin = 4 * std::sqrt(2.0 / layouts);
+    const double k = i >= 6 || i == 2 ? 3 : 5, most = k * (m - 1.0) / (m * (k - 1));
+    CHECK(predicted[i] / squares[i] >= 1 - margin);
+    CHECK(predicted[i] / squares[i] <= most * (1 + margin));
+  }
+}
+
+TEST_CASE("Pseudo-values are changes of the mean where a realization is left out") {
+  constexpr std::size_t n = 40, m = 5;
+  const std::vector<double> values = layout(n, m, 5e-3, 0.4);
+  const Curve all = mean_of_present(taps(n), values, m);
+  std::vector<std::vector<double>> changes(n);
+  for (std::size_t r = 0; r < m; ++r) {
+    std::vector<double> others;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (k % m != r) others.push_back(values[k]);
+    }
+    const Curve without = mean_of_present(taps(n), others, m - 1);
+    for (std::size_t i = 0; i < n; ++i) changes[i].push_back((m - 1.0) * (all.x[i] - without.x[i]));
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    double mean = 0;
+    for (const double change : changes[i]) mean += change / m;
+    for (std::size_t r = 0; r < m; ++r) {
+      const double deviation = all.values[i * m + r] - all.x[i];
+      CHECK(deviation == Approx(changes[i][r] - mean).margin(1e-14).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("Pseudo-values are finite where one realization alone links two others") {
+  // Without the middle one the offset between the others would be anything.
+  std::vector<double> values = layout(60, 3, 1e-3, 0);
+  for (std::size_t i = 0; i < 60; ++i) values[i * 3 + (i < 30 ? 2 : 0)] = missing;
+  const Curve curve = mean_of_present(taps(60), values, 3);
+  for (std::size_t i = 30; i < 60; ++i) values[i * 3 + 2] += 5;
+  const Curve shifted = mean_of_present(taps(60), values, 3);
+  const auto offset = [](const Curve& one, std::size_t r) { return one.offsets[r]; };
+  CHECK(offset(shifted, 2) - offset(shifted, 1) == Approx(offset(curve, 2) - offset(curve, 1) + 5));
+  // The level moves by a third of the shift, and so does the share of the third realization.
+  CHECK(shifted.x[5] - curve.x[5] == Approx(5 / 3.0));
+  for (std::size_t i = 0; i < 60; ++i) {
+    CHECK(shifted.values[i * 3 + 2] - shifted.x[i] - (curve.values[i * 3 + 2] - curve.x[i]) ==
+          Approx(10 / 3.0).epsilon(1e-6));
   }
 }
 

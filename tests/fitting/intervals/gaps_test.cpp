@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <string>
 
 #include "fitting/fit.hpp"
 #include "fitting/mean_of_present.hpp"
@@ -41,7 +43,7 @@ struct Ensemble {
 // At random a fifth of the values; or half of the realizations, which leave one after another.
 bool is_missing(const Ensemble& ensemble, int r, int k, double uniform) {
   if (ensemble.missing == Missing::random) return uniform < 0.2;
-  return ensemble.missing == Missing::drop_out && r >= ensemble.m / 2 && k >= 50 + 10 * r;
+  return ensemble.missing == Missing::drop_out && r >= (ensemble.m + 1) / 2 && k >= 50 + 10 * r;
 }
 
 Curve curve_of(const Ensemble& ensemble, const Law& law, const Model& model, int number) {
@@ -68,24 +70,36 @@ Curve curve_of(const Ensemble& ensemble, const Law& law, const Model& model, int
   return mean_of_present(std::move(t), std::move(values), static_cast<std::size_t>(ensemble.m));
 }
 
-void check(const Law& law, const Ensemble& ensemble, int ensembles) {
-  const auto model = make_model(law.model);
-  int examined = 0, covered[2] = {0, 0};
+/// Shares of intervals that contain the truth, of all parameters; mean degrees of freedom.
+struct Coverage {
+  double share[2] = {0, 0};  // at interval_levels
   double dof = 0;
+};
+
+Coverage coverage(const Law& law, const Ensemble& ensemble, int ensembles) {
+  const auto model = make_model(law.model);
+  Coverage found;
+  int examined = 0, covered[2] = {0, 0};
   for (int number = 1; number <= ensembles; ++number) {
     const auto result = fit(*model, curve_of(ensemble, law, *model, number));
-    const Fit& found = std::get<Fit>(result);
-    dof += found.error_dof / ensembles;
+    const Fit& fitted = std::get<Fit>(result);
+    found.dof += fitted.error_dof / ensembles;
     for (std::size_t j = 0; j < law.truth.size(); ++j) {
       ++examined;
       for (int level = 0; level < 2; ++level) {
-        const Interval& interval = found.estimates[j].intervals[level];
+        const Interval& interval = fitted.estimates[j].intervals[level];
         covered[level] += interval.lower <= law.truth[j] && law.truth[j] <= interval.upper;
       }
     }
   }
+  for (int level = 0; level < 2; ++level) found.share[level] = 1.0 * covered[level] / examined;
+  return found;
+}
+
+void check(const Law& law, const Ensemble& ensemble, int ensembles, double least = 0.93) {
+  const Coverage found = coverage(law, ensemble, ensembles);
   const char* names[] = {"none", "random", "drop-out"};
-  const double low = 1.0 * covered[0] / examined, high = 1.0 * covered[1] / examined;
+  const double low = found.share[0], high = found.share[1], dof = found.dof;
   std::printf(
       "%-16s gaps %-8s M %2d  rho %4.2f  offsets %1.0f  68 %%: %5.1f  95 %%: %5.1f  dof %4.2f\n",
       law.model, names[static_cast<int>(ensemble.missing)], ensemble.m, ensemble.rho,
@@ -96,7 +110,7 @@ void check(const Law& law, const Ensemble& ensemble, int ensembles) {
   const auto margin = [&](double rate) { return 3 * std::sqrt(rate * (1 - rate) / ensembles); };
   CHECK(low >= 0.60 - margin(0.60));
   CHECK(low <= 0.80 + margin(0.80));
-  CHECK(high >= 0.90 - margin(0.90));
+  CHECK(high >= least - margin(least));
   CHECK(dof <= ensemble.m - 1 + 1e-9);
   CHECK(dof >= 1);
 }
@@ -109,8 +123,18 @@ TEST_CASE("Realizations with gaps: intervals hold the truth as they say", "[stat
   check(kww, {10, 0, 0, Missing::drop_out}, 15);
 }
 
+TEST_CASE("Six realizations, of which half leave, with a memory of half the curve",
+          "[statistics]") {
+  // Less two standard errors of 300 ensembles. By influences of small changes of weight 91 %.
+  constexpr int ensembles = 300;
+  const double least = 0.95 - 2 * std::sqrt(0.95 * 0.05 / ensembles);
+  const auto& laws = other_laws();
+  const auto ageing = std::ranges::find(laws, std::string("ageing"), &Law::model);
+  CHECK(coverage(*ageing, {6, 0.99, 1, Missing::drop_out}, ensembles).share[1] >= least);
+}
+
 TEST_CASE("Realizations with gaps: the table of intervals", "[nightly]") {
-  for (const int m : {4, 6, 10}) {
+  for (const int m : {3, 4, 6, 10, 20}) {
     for (const double rho : {0.0, 0.99}) {
       for (const double offset : {0.0, 1.0}) {
         for (const Missing missing : {Missing::none, Missing::random, Missing::drop_out}) {
@@ -124,7 +148,7 @@ TEST_CASE("Realizations with gaps: the table of intervals", "[nightly]") {
 TEST_CASE("Realizations with gaps: intervals of other laws", "[nightly]") {
   for (const Law& law : other_laws()) {
     DYNAMIC_SECTION(law.model) {
-      for (const int m : {4, 6, 10}) {
+      for (const int m : {3, 6, 20}) {
         for (const double rho : {0.0, 0.99}) {
           for (const double offset : {0.0, 1.0}) {
             for (const Missing missing : {Missing::random, Missing::drop_out}) {
