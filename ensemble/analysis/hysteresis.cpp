@@ -104,7 +104,8 @@ void add_values(const Column& observable, std::span<const double> values, std::s
   add("_count", std::move(counts), "1", "realizations that reached the step's end");
 }
 
-void add_loops(const std::vector<Loop>& all, const std::string& units, Table& table) {
+void add_loops(const std::vector<Loop>& all, const std::string& strength_units,
+               const std::string& units, Table& table) {
   std::vector<std::uint64_t> index, earlier, later, counts;
   std::vector<double> lowest, highest, areas, errors, dof, p, corrected;
   std::vector<std::string> statements;
@@ -120,7 +121,7 @@ void add_loops(const std::vector<Loop>& all, const std::string& units, Table& ta
     dof.push_back(loop.error.dof);
     p.push_back(loop.p);
     corrected.push_back(loop.corrected);
-    statements.push_back(loop.statement());
+    statements.push_back(loop.statement(units));
   }
   table.axes.push_back({"loop", {"loop"}, std::move(index), "1", "pair of branches", ""});
   const auto add = [&](const char* name, auto column, const std::string& unit,
@@ -129,8 +130,8 @@ void add_loops(const std::vector<Loop>& all, const std::string& units, Table& ta
   };
   add("earlier_branch", std::move(earlier), "1", "branch of the loop");
   add("later_branch", std::move(later), "1", "branch of the loop");
-  add("lowest_strength", std::move(lowest), "1", "where the branches begin to overlap");
-  add("highest_strength", std::move(highest), "1", "where they end to");
+  add("lowest_strength", std::move(lowest), strength_units, "where the branches begin to overlap");
+  add("highest_strength", std::move(highest), strength_units, "where they end to");
   add("area", std::move(areas), units,
       "integral over strength of the later branch less the earlier");
   add("area_error", std::move(errors), units, "standard error over realizations");
@@ -188,7 +189,7 @@ std::vector<Loop> loops(std::span<const double> strengths, std::span<const doubl
   return found;
 }
 
-std::string Loop::statement() const {
+std::string Loop::statement(const std::string& units) const {
   if (!error.known()) {
     return fmt::format("cannot decide with {} realization{}: an area needs two for its error",
                        realizations, realizations == 1 ? "" : "s");
@@ -201,13 +202,13 @@ std::string Loop::statement() const {
     return fmt::format("cannot decide with {} realizations: the area is not known", realizations);
   }
   if (corrected < level) {
-    return finite_text("the branches differ: area {:+.2g} ({}, {} realizations)", area,
-                       p_text(corrected), realizations);
+    return finite_text("the branches differ: area {:+.2g}{} ({}, {} realizations)", area,
+                       unit_behind(units), p_text(corrected), realizations);
   }
   return finite_text(
-      "cannot decide with {} realizations: {}, only an area of {:.2g} or more would have been "
+      "cannot decide with {} realizations: {}, only an area of {:.2g}{} or more would have been "
       "found with 80 %",
-      realizations, p_text(corrected), detectable);
+      realizations, p_text(corrected), detectable, unit_behind(units));
 }
 
 std::vector<double> step_values(const ProtocolSteps& steps, std::span<const double> series,
@@ -235,8 +236,12 @@ Table hysteresis_table(std::string name, const Column& observable, const Protoco
   add_values(observable, values, steps.strengths.size(), realizations, table);
   const std::vector<Loop> found = loops(steps.strengths, values, realizations);
   if (!found.empty()) {
-    const bool plain = steps.units == "1";
-    add_loops(found, plain ? observable.units : observable.units + " * " + steps.units, table);
+    const std::string product = observable.units + " * " + steps.units;
+    add_loops(found, steps.units,
+              steps.units == "1"        ? observable.units
+              : observable.units == "1" ? steps.units
+                                        : product,
+              table);
   }
   table.notes = {{"observable", observable.name},
                  {"control", steps.control},

@@ -53,6 +53,11 @@ void add_blocking(Table& table, const AnalysedSeries& series, const BlockingResu
        one("block_error_dof", infinite, "1", "its degrees of freedom")});
 }
 
+SteadyState in_units_of(const AnalysedSeries& series, SteadyState state) {
+  state.trend.units = series.units;
+  return state;
+}
+
 }  // namespace
 
 Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
@@ -105,7 +110,7 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
                  {"taps", fmt::format("{} to {}", series.first_tap, series.last_tap)},
                  {"realizations", fmt::to_string(state.realizations)},
                  {"plateau", plateau},
-                 {"verdict", state.statement()}};
+                 {"verdict", in_units_of(series, state).statement()}};
   return table;
 }
 

@@ -65,7 +65,7 @@ const std::vector<double>* values_at(const ComparedPoint& point, const PackingNu
 /// ComparisonLines of a table of differences.
 struct ComparisonLines {
   std::vector<std::uint64_t> line, from_point, to_point;
-  std::vector<std::string> quantity, from, to;
+  std::vector<std::string> quantity, units, from, to;
   std::vector<double> from_value, to_value, value, error, dof, p, corrected;
 };
 
@@ -88,6 +88,7 @@ void add_lines(std::span<const ComparedPoint> points, const PackingNumber& numbe
     const auto& second = points[static_cast<std::size_t>(curve.x()[one.to])];
     lines.line.push_back(lines.line.size());
     lines.quantity.push_back(number.name);
+    lines.units.push_back(number.units);
     lines.from.push_back(first.label);
     lines.to.push_back(second.label);
     lines.from_point.push_back(first.point);
@@ -120,6 +121,7 @@ Table table_of(const std::string& part, std::uint64_t tap, std::size_t n_points,
     table.quantities.push_back({name, {"line"}, std::move(values), "1", long_name, source});
   };
   add("quantity", std::move(lines.quantity), "number of a packing");
+  add("units", std::move(lines.units), "units of its means, difference and error");
   add("from", std::move(lines.from), "sweep point that the difference is taken from");
   add("to", std::move(lines.to), "sweep point whose mean it is taken to");
   add("from_mean", std::move(lines.from_value), "mean over the realizations of `from`");

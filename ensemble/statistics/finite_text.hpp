@@ -29,4 +29,9 @@ std::string finite_text(fmt::format_string<Arguments...> format, Arguments&&... 
   return fmt::vformat(format, fmt::make_format_args(arguments...));
 }
 
+/// " diameter": what follows a number in a sentence; empty without a unit.
+inline std::string unit_behind(const std::string& units) {
+  return units.empty() || units == "1" ? "" : " " + units;
+}
+
 }  // namespace jostle::inline ensemble

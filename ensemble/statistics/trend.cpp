@@ -165,15 +165,16 @@ std::string Trend::statement() const {
                   tests == 1 ? "" : "s", decisive, decisive_dof, decisive_dof == 1 ? "" : "s");
   if (!drifts()) return fmt::format("no drift found ({})", test);
   return finite_text(
-      "it drifts{}: {:+.2g} over the taps by its line, halves differ by {:+.2g} ({})",
+      "it drifts{}: {:+.2g}{} over the taps by its line, halves differ by {:+.2g}{} ({})",
       line.over.known() ? "" : ", or remembers for longer than these taps", line.value,
-      halves.value, test);
+      unit_behind(units), halves.value, unit_behind(units), test);
 }
 
 std::string Trend::power(const std::string& only) const {
   const double relative = detectable_in_sigma();
-  const std::string found = finite_text(
-      "the test finds {}drifts of {:.2g} or more over the taps (80 % power)", only, detectable);
+  const std::string found =
+      finite_text("the test finds {}drifts of {:.2g}{} or more over the taps (80 % power)", only,
+                  detectable, unit_behind(units));
   if (!std::isfinite(relative)) return found;
   return found + finite_text(", {:.2g} times the scatter of taps about their line", relative);
 }

@@ -46,6 +46,8 @@ struct Trend {
   bool drifts() const { return p < level; }
   /// No series changes at all: there is neither a drift nor scatter that could hide one.
   bool is_constant() const { return sigma == 0 && line.value == 0 && halves.value == 0; }
+  /// Units of the changes, for statements.
+  std::string units = "1";
   /// "it drifts: +0.02 over the taps (p = 0.0003 at the 5 % level, 2 tests, ...)",
   /// "no drift found (p = 0.4 at the 5 % level, ...)", or "no drift: the series is constant".
   std::string statement() const;

@@ -115,7 +115,8 @@ void SpectrumAnalysis::add(std::span<const double> values) {
 
 Table SpectrumAnalysis::table() const {
   const EnsembleSpectrum spectrum = average_.result();
-  const Trend trend = trend_.result();
+  Trend trend = trend_.result();
+  trend.units = series_.units;
   const Band band =
       settings_.band.value_or(Band{.lowest = static_cast<double>(spectrum.bins.first.front()) /
                                              static_cast<double>(options_.segment),

@@ -31,7 +31,7 @@ Json steady_table(const DrawnFile& file, const std::vector<TableView>& made) {
   }
   return estimates_block("The last taps of every sweep point",
                          {"observable", "sweep point", "taps", "mean", "σ of single taps",
-                          "memory τ (taps)", "drift", "verdict"},
+                          "memory τ", "drift", "verdict"},
                          rows);
 }
 
@@ -48,8 +48,7 @@ Json ageing_table(const TableView& table) {
     rows.push_back(row);
   }
   return estimates_block("A∞ (1 − 1/(1 + B ln(1 + t/τ))), fitted to each waiting time",
-                         {"waiting time (taps)", "A∞", "B", "τ (taps)", "misfit", "statement"},
-                         rows);
+                         {"waiting time (taps)", "A∞", "B", "τ", "misfit", "statement"}, rows);
 }
 
 /// The table's quantities a, b and v as the captions call them: A, B and V.
@@ -151,8 +150,7 @@ Json settings_table(const TableView& table) {
   }
   return estimates_block(
       "Settings, " + words(table.observable()),
-      {"setting", "part", "bias", "core time per tap (s)", "core hours of the scene", "best"},
-      rows);
+      {"setting", "part", "bias", "core time per tap", "cost of the scene", "best"}, rows);
 }
 
 }  // namespace
@@ -224,6 +222,7 @@ Json sweep_section(const PageContent& content) {
     if (figures.is_null()) continue;
     blocks.add(figures);
     blocks.add(statement_block("Maximum", table.note("maximum")));
+    blocks.add(statement_block("Minimum", table.note("minimum")));
     if (std::isfinite(table.value("line_slope"))) {
       blocks.add(
           statement_block("Straight line", "slope " + value_cell(table, "line_slope") +

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "study/drawing/drawn/value_text.hpp"
+#include "study/drawing/figures/drawn_file.hpp"
 #include "study/drawing/page/page_json.hpp"
 
 namespace jostle::inline study {
@@ -49,7 +51,9 @@ Json table_block(const std::string& caption, const PageRow& head,
 
 Json estimates_block(const std::string& caption, const PageRow& head,
                      const std::vector<PageRow>& rows) {
-  return table_block(caption + ". In a(b), b is half the 68 % interval, in the last digits of a.",
+  return table_block(caption +
+                         ". In a(b), b is half the 68 % interval, in the last digits of a. Numbers "
+                         "without a unit are dimensionless.",
                      head, rows);
 }
 
@@ -147,13 +151,25 @@ std::string title_of(const DrawnFile& file, const TableView& table) {
   return table.point() ? title + ", " + file.label(*table.point()) : title;
 }
 
-std::string value_cell(const TableView& table, const std::string& quantity, std::size_t i) {
-  return typeset_with_error(table.value(quantity, i), table.half_width(quantity, i));
+std::string value_cell(const TableView& table, const std::string& quantity, std::size_t i,
+                       UnitPlace unit) {
+  const double value = table.value(quantity, i);
+  const std::string text = typeset_with_error(value, table.half_width(quantity, i));
+  const bool bare = unit == UnitPlace::head || !std::isfinite(value);
+  return bare ? text : with_unit(text, table.units(quantity));
 }
 
 std::string number_cell(const TableView& table, const std::string& quantity, std::size_t i,
                         int digits) {
-  return typeset_number(table.value(quantity, i), digits);
+  const double value = table.value(quantity, i);
+  const std::string text = typeset_number(value, digits);
+  return std::isfinite(value) ? with_unit(text, table.units(quantity)) : text;
+}
+
+std::string with_unit(const std::string& number, const std::string& units) {
+  const std::string bracketed = unit_text(units);  // " (diameter)"
+  if (bracketed.empty()) return number;
+  return number + ' ' + bracketed.substr(2, bracketed.size() - 3);
 }
 
 }  // namespace jostle::inline study

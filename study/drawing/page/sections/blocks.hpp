@@ -95,9 +95,14 @@ std::vector<TableView> not_refused(const std::vector<TableView>& tables);
 std::vector<std::uint32_t> numbers_of(const std::vector<TableView>& tables);
 std::string title_of(const DrawnFile& file, const TableView& table);
 
-/// value(error) of a quantity; its error is NAME_error.
-std::string value_cell(const TableView& table, const std::string& quantity, std::size_t i = 0);
+/// Where a unit is printed: with each number, or at the head of its column.
+enum class UnitPlace { cell, head };
+/// value(error) of a quantity, with its unit; its error is NAME_error.
+std::string value_cell(const TableView& table, const std::string& quantity, std::size_t i = 0,
+                       UnitPlace unit = UnitPlace::cell);
 std::string number_cell(const TableView& table, const std::string& quantity, std::size_t i = 0,
                         int digits = 4);
+/// "4.18(2) diameter": a text that is a number, with a unit that is not 1.
+std::string with_unit(const std::string& number, const std::string& units);
 
 }  // namespace jostle::inline study

@@ -45,9 +45,8 @@ std::string estimate(const Parameters& parameters, std::size_t j) {
   if (!std::isfinite(value)) return "-";
   const double half = (parameters.high(j, 0) - parameters.low(j, 0)) / 2;
   if (!std::isfinite(half)) return typeset_number(value) + ", error unknown";
-  // Half of a lopsided interval would reach beyond the 95 % limits; the terminal prints both ends.
-  const bool lopsided = value - half < parameters.low(j, 1) || value + half > parameters.high(j, 1);
-  if (lopsided && parameters.low(j, 0) < value && value < parameters.high(j, 0))
+  if (is_lopsided(value, parameters.low(j, 0), parameters.high(j, 0), parameters.low(j, 1),
+                  parameters.high(j, 1)))
     return value_with_limits(value, parameters.low(j, 0), parameters.high(j, 0));
   return typeset_with_error(value, half);
 }
@@ -55,15 +54,18 @@ std::string estimate(const Parameters& parameters, std::size_t j) {
 Json parameter_table(const Parameters& parameters, const std::string& law) {
   const std::vector<std::string> names = parameters.names(),
                                  statements =
-                                     parameters.table.texts(parameters.prefix + "statement");
+                                     parameters.table.texts(parameters.prefix + "statement"),
+                                 units = parameters.table.texts(parameters.prefix + "units");
   std::vector<PageRow> rows;
   for (std::size_t j = 0; j < names.size(); ++j) {
     rows.push_back({names[j], estimate(parameters, j),
+                    j < units.size() && units[j] != "1" ? units[j] : "–",
                     interval(parameters.low(j, 1), parameters.high(j, 1)),
                     j < statements.size() ? statements[j] : ""});
   }
-  return estimates_block("Parameters of the " + law,
-                         {"parameter", "estimate", "95 % interval", "statement"}, rows);
+  return estimates_block(
+      "Parameters of the " + law + ". Units: X, that of the curve's values; t, that of its axis",
+      {"parameter", "estimate", "unit", "95 % interval", "statement"}, rows);
 }
 
 std::string joined(const std::vector<std::string>& names) {

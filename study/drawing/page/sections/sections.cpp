@@ -65,7 +65,7 @@ Json other_section(const PageContent& content) {
     if (is_shown) continue;
     std::vector<PageRow> rows;
     for (const std::string& quantity : table.quantities()) {
-      rows.push_back({words(quantity), listed(table, quantity)});
+      rows.push_back({words(quantity) + unit_text(table.units(quantity)), listed(table, quantity)});
     }
     blocks.add(details_block(table.group() + "/" + table.name(),
                              {table_block(table.name(), {"quantity", "values"}, rows)}));

@@ -49,14 +49,15 @@ Json numbers_table(const TableView& table, const Part& part) {
   }
   if (names.empty()) return nullptr;
   PageRow head{"tap"};
-  for (const std::string& name : names) head.emplace_back(printed_name(name));
+  for (const std::string& name : names)
+    head.emplace_back(printed_name(name) + unit_text(table.units(name)));
   const std::vector<double> taps = table.axis("tap");
   std::vector<PageRow> rows;
   for (std::size_t i = 0; i < taps.size(); ++i) {
     PageRow row{fmt::format("{}", taps[i])};
     for (const std::string& name : names) {
       const std::vector<std::string> texts = table.texts(name);
-      row.emplace_back(i < texts.size() ? texts[i] : value_cell(table, name, i));
+      row.emplace_back(i < texts.size() ? texts[i] : value_cell(table, name, i, UnitPlace::head));
     }
     rows.push_back(row);
   }
@@ -65,19 +66,23 @@ Json numbers_table(const TableView& table, const Part& part) {
 
 /// Differences between sweep points, one line per quantity and pair.
 Json differences_table(const DrawnFile& file, const TableView& table, const Part& part) {
-  const std::vector<std::string> quantities = table.texts("quantity");
+  const std::vector<std::string> quantities = table.texts("quantity"), units = table.texts("units");
   const auto label = [&](const char* which, std::size_t i) {
     return file.label(static_cast<std::uint32_t>(table.value(which, i)));
   };
   std::vector<PageRow> rows;
   for (std::size_t i = 0; i < quantities.size(); ++i) {
     const bool is_shown = std::ranges::find(part.numbers, quantities[i]) != part.numbers.end();
+    const auto in_units = [&](const std::string& number) {
+      return i < units.size() ? with_unit(number, units[i]) : number;
+    };
     if (!is_shown || !std::isfinite(table.value("difference", i))) continue;
     rows.push_back(
         {Json{{"print", page_text(printed_name(quantities[i]))}},
          Json{{"print", page_text(label("to_point", i) + " against " + label("from_point", i))}},
-         number_cell(table, "to_mean", i, 5), number_cell(table, "from_mean", i, 5),
-         value_cell(table, "difference", i), number_cell(table, "p", i, 2),
+         in_units(number_cell(table, "to_mean", i, 5)),
+         in_units(number_cell(table, "from_mean", i, 5)),
+         in_units(value_cell(table, "difference", i)), number_cell(table, "p", i, 2),
          number_cell(table, "p_corrected", i, 2)});
   }
   const Json lines = estimates_block(
