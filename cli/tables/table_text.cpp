@@ -297,7 +297,7 @@ class BlockText {
 
 /// Results come first.
 bool is_verdict(const std::string& note) {
-  return note.ends_with("verdict") || note == "refused" || note == "maximum";
+  return note.ends_with("verdict") || note == "refused" || note == "maximum" || note == "minimum";
 }
 
 std::string notes(const Table& table) {

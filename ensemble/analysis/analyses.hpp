@@ -145,7 +145,7 @@ struct SweepSettings {
   bool operator==(const SweepSettings&) const = default;
 
   static constexpr About about{"sweep",
-                               "A quantity against the swept value, its maximum, its straight "
+                               "A quantity against the swept value, its extrema, its straight "
                                "line, differences between its points"};
   static constexpr auto fields() {
     return std::tuple{

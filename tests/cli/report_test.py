@@ -207,7 +207,7 @@ class Data(Report):
 
     def test_the_data_are_those_of_the_file(self):
         for look in (self.curves, self.tables, self.packings, self.snapshots, self.summary, self.comparisons, self.folded,
-                     self.pairs_are_drawn_from_contact_on):
+                     self.units, self.pairs_are_drawn_from_contact_on):
             with self.subTest(look.__name__):
                 look()
 
@@ -248,7 +248,8 @@ class Data(Report):
                 # The section of a part shows differences between sweep points.
                 shown = sections[path[-1] if kind == "comparison" else kinds.get(kind, kind)]
                 for key, value in file[name].attrs.items():
-                    if key in ("note_verdict", "note_refused", "note_choice", "note_ageing_verdict", "note_maximum"):
+                    if key in ("note_verdict", "note_refused", "note_choice", "note_ageing_verdict", "note_maximum",
+                               "note_minimum"):
                         with self.subTest(table=name, note=key):
                             lead = re.match(r"(not reached|reached|cannot decide|found|agrees|maximum)?(.*)", value)
                             # Ageing has a table: the answer, and the test that follows it in brackets.
@@ -258,6 +259,25 @@ class Data(Report):
                                 self.assertIn(json.dumps(part, ensure_ascii=False)[1:-1], shown)
                             compared += 1
         self.assertGreater(compared, 15)
+
+    def units(self):
+        """Numbers of tables have their units, and the captions say that others have none."""
+        sections = {one["id"]: one["blocks"] for one in self.run_data["sections"]}
+        (steady,) = [block for block in sections["steady"] if block["kind"] == "table"]
+        self.assertIn("Numbers without a unit are dimensionless.", steady["caption"])
+        seen = 0
+        for observable, _, _, mean, sigma, memory, drift, _ in steady["rows"]:
+            if observable != "mean height":
+                continue
+            for cell in (mean, sigma, drift):
+                self.assertRegex(cell, r"\d\)? diameter$")
+            self.assertRegex(memory, r"\d\)? taps$|^–?$")
+            seen += 1
+        self.assertEqual(seen, 3)
+        shown = json.dumps(sections["profile"], ensure_ascii=False)
+        self.assertIn("gradient α (1/R)", shown)
+        laws = json.dumps(sections["fits"], ensure_ascii=False)
+        self.assertIn('"parameter", "estimate", "unit", "95 % interval"', laws)
 
     def summary(self):
         """Five lines, before everything else."""

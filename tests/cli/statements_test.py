@@ -47,7 +47,8 @@ class Statements(Case):
             self.assertEqual(place in kinetic, verdict == "not reached", condition)
             self.assertEqual(place in shown, verdict.startswith("cannot decide"), condition)
         self.assertTrue(sweep[f"{name}: steady"].startswith("kinetic: the averaged taps still drift at "))
-        self.assertTrue(sweep[f"{name}: maximum"].endswith(sweep[f"{name}: steady"]))
+        for extremum in ("maximum", "minimum"):
+            self.assertTrue(sweep[f"{name}: {extremum}"].endswith(sweep[f"{name}: steady"]))
         few = self.notes("analyse", "tiny.h5", "sweep", "--observable", "mean_height", "--last", "5")
         self.assertIn("not shown to be steady: the averaged taps at 0.03162, 0.04472, 0.06325", few[f"{name}: steady"])
 

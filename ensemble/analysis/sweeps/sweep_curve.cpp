@@ -79,6 +79,16 @@ SweepCurve::SweepCurve(std::vector<double> x, std::vector<std::vector<double>> r
   streams_ == Streams::matched ? pool_matched() : pool_independent();
 }
 
+SweepCurve SweepCurve::reflected() const {
+  SweepCurve turned = *this;
+  for (double& y : turned.y_) y = -y;
+  for (double& y : turned.fitted_y_) y = -y;
+  for (std::vector<double>& values : turned.realizations_) {
+    for (double& value : values) value = -value;
+  }
+  return turned;
+}
+
 void SweepCurve::sort_and_drop() {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < x_.size(); ++i) {

@@ -60,6 +60,8 @@ class SweepCurve {
   /// Of one realization (of one value where they are not known), pooled over points: about the mean
   /// of its point, and with matched streams about its own level too. None where no point has two.
   ErrorOf pooled() const { return pooled_; }
+  /// -y(x): the curve turned upside down, its errors kept.
+  SweepCurve reflected() const;
   /// The p-value of realizations scattering alike at all points, as pooling presumes: Bartlett
   /// 1937, doi:10.1098/rspa.1937.0109. Matched streams: of the residuals of the two-way layout,
   /// with M - 1 degrees of freedom at each of n points, and the statistic divided by 1 - 1/(n -
@@ -87,8 +89,9 @@ class SweepCurve {
 };
 
 /// The highest point of a parabola through the points about the largest y, which describes them,
-/// and where the truth can have its maximum, whatever its shape.
-struct SweepMaximum {
+/// and where the truth can have its maximum, whatever its shape. Of a minimum: the lowest point,
+/// the least y.
+struct SweepExtremum {
   double x = 0, y = 0;  // NaN without one inside the points used
   /// 95 % interval of the place, of a curve that rises to one maximum and falls from it: from the
   /// last point below to the first one above those that no other is known to exceed (t-tests, each
@@ -109,7 +112,9 @@ struct SweepMaximum {
 };
 
 /// A parabola through `points` (3 or more; all of a smaller curve) neighbours of the largest y.
-SweepMaximum maximum(const SweepCurve& curve, std::size_t points = 5);
+SweepExtremum maximum(const SweepCurve& curve, std::size_t points = 5);
+/// The maximum of the reflected curve: found as often, with the same p-values and intervals.
+SweepExtremum minimum(const SweepCurve& curve, std::size_t points = 5);
 
 /// y = intercept + slope x by least squares.
 struct StraightLine {
@@ -148,8 +153,8 @@ struct SweptValue {
   std::string name, units, long_name;
 };
 
-/// The curve with errors, its maximum, its straight line and, where realizations are known, the
-/// differences between its points.
+/// The curve with errors, its maximum and minimum, its straight line and, where realizations are
+/// known, the differences between its points.
 Table sweep_table(std::string name, const SweptValue& swept, const Column& quantity,
                   const SweepCurve& curve, std::optional<std::size_t> reference = std::nullopt);
 

@@ -106,32 +106,39 @@ std::string realizations_of(const SweepCurve& curve) {
   return fmt::format(" with {} {}", range, most == 1 ? "realization" : "realizations");
 }
 
-std::string verdict_of(const SweepCurve& curve, const SweepMaximum& found) {
+/// What a verdict calls an extremum and the curve on both sides of it.
+struct ExtremumWords {
+  const char *extremum, *end_value, *before, *behind, *bend;
+};
+constexpr ExtremumWords of_maximum{"maximum", "largest", "rises", "falls", "down"};
+constexpr ExtremumWords of_minimum{"minimum", "least", "falls", "rises", "up"};
+
+/// For a curve whose extremum is its maximum: a minimum's is reflected.
+std::string verdict_of(const SweepCurve& curve, const SweepExtremum& found,
+                       const ExtremumWords& words) {
   if (std::isnan(found.p)) {
-    return "cannot decide: there are no errors to test a maximum by";
+    return fmt::format("cannot decide: there are no errors to test a {} by", words.extremum);
   }
   const std::string test = p_text(found.p) + ", two lines";
   if (found.found()) {
     const bool open = std::isnan(found.x_low) || std::isnan(found.x_high);
-    return "found inside the sweep: the curve rises to it and falls behind it (" + test + ")" +
-           (open ? "; the 95 % interval of its place, by a test of its own, reaches an end of the "
-                   "sweep"
-                 : "");
+    return fmt::format("found inside the sweep: the curve {} to it and {} behind it ({}){}",
+                       words.before, words.behind, test,
+                       open ? "; the 95 % interval of its place, by a test of its own, reaches an "
+                              "end of the sweep"
+                            : "");
   }
   const auto& y = curve.fitted_y();
   const auto top = std::ranges::max_element(y);
-  if (std::isnan(found.x) && (top == y.begin() || top + 1 == y.end())) {
-    const auto least = std::ranges::min_element(y);
-    const bool inside = least != y.begin() && least + 1 != y.end();
-    return "none found: the largest value is at an end of the sweep (" + test + ")" +
-           (inside ? finite_text("; the least value is inside, at {:.4g}: no minimum is tested",
-                                 curve.x()[static_cast<std::size_t>(least - y.begin())])
-                   : "");
+  if (top == y.begin() || top + 1 == y.end()) {
+    return fmt::format("none found: the {} value is at an end of the sweep ({})", words.end_value,
+                       test);
   }
-  return fmt::format("cannot decide{}: {} ({})", realizations_of(curve),
-                     std::isnan(found.x) ? "the points about the largest value do not bend down"
-                                         : "chance alone would often give such a maximum",
-                     test);
+  const std::string reason =
+      std::isnan(found.x)
+          ? fmt::format("the points about the {} value do not bend {}", words.end_value, words.bend)
+          : fmt::format("chance alone would often give such a {}", words.extremum);
+  return fmt::format("cannot decide{}: {} ({})", realizations_of(curve), reason, test);
 }
 
 // F of the squares about a line: their sum over what the errors of the residuals make of it.
@@ -173,15 +180,13 @@ ErrorOf scatter_error(const SweepCurve& curve, const LinearFit& fit,
   return {std::sqrt(squares / dof * sum), dof};
 }
 
-}  // namespace
-
-SweepMaximum maximum(const SweepCurve& curve, std::size_t points) {
-  SweepMaximum found{.x = not_a_number,
-                     .y = not_a_number,
-                     .x_low = not_a_number,
-                     .x_high = not_a_number,
-                     .p = not_a_number,
-                     .verdict = "cannot decide: fewer than three different strengths"};
+SweepExtremum highest(const SweepCurve& curve, std::size_t points, const ExtremumWords& words) {
+  SweepExtremum found{.x = not_a_number,
+                      .y = not_a_number,
+                      .x_low = not_a_number,
+                      .x_high = not_a_number,
+                      .p = not_a_number,
+                      .verdict = "cannot decide: fewer than three different strengths"};
   points = std::min(std::max<std::size_t>(points, 3), curve.n_points());
   if (points < 3) return found;
   const std::vector<double>& y = curve.fitted_y();
@@ -210,7 +215,19 @@ SweepMaximum maximum(const SweepCurve& curve, std::size_t points) {
     if (lowest > 0) found.x_low = curve.x()[lowest - 1];
     if (highest + 1 < curve.n_points()) found.x_high = curve.x()[highest + 1];
   }
-  found.verdict = verdict_of(curve, found);
+  found.verdict = verdict_of(curve, found, words);
+  return found;
+}
+
+}  // namespace
+
+SweepExtremum maximum(const SweepCurve& curve, std::size_t points) {
+  return highest(curve, points, of_maximum);
+}
+
+SweepExtremum minimum(const SweepCurve& curve, std::size_t points) {
+  SweepExtremum found = highest(curve.reflected(), points, of_minimum);
+  found.y = -found.y;
   return found;
 }
 

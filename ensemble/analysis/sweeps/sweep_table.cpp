@@ -1,5 +1,6 @@
-#include "ensemble/analysis/sweeps/sweep_curve.hpp"
+#include <fmt/format.h>
 
+#include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline ensemble {
@@ -19,28 +20,30 @@ void add_with_error(const std::string& name, double value, const ErrorOf& error,
   add_value(name + "_dof", error.dof, "1", "degrees of freedom of " + name + "_error", table);
 }
 
-void add_maximum(const SweepMaximum& top, const SweptValue& swept, const Column& quantity,
-                 Table& table) {
+void add_extremum(const std::string& name, const char* place, const SweepExtremum& found,
+                  const SweptValue& swept, const Column& quantity, Table& table) {
   constexpr const char* source = "multiple comparisons with the best: Hsu 1996";
-  add_value("maximum_at", top.x, swept.units,
-            swept.long_name + ", at the highest point of a parabola", table);
-  add_value("maximum_at_low", top.x_low, swept.units,
-            "lower end of the 95 % interval of the maximum's place, of any shape with one maximum",
+  add_value(name + "_at", found.x, swept.units,
+            fmt::format("{}, at the {} point of a parabola", swept.long_name, place), table);
+  add_value(name + "_at_low", found.x_low, swept.units,
+            fmt::format("lower end of the 95 % interval of the {0}'s place, of any shape with one "
+                        "{0}",
+                        name),
             table, source);
-  add_value("maximum_at_high", top.x_high, swept.units, "its upper end", table, source);
-  add_value("maximum", top.y, quantity.units,
-            quantity.long_name +
-                ", at the highest point of the parabola: a description, without an error",
+  add_value(name + "_at_high", found.x_high, swept.units, "its upper end", table, source);
+  add_value(name, found.y, quantity.units,
+            fmt::format("{}, at the {} point of the parabola: a description, without an error",
+                        quantity.long_name, place),
             table);
-  add_value("maximum_p", top.p, "1", "of no maximum inside the sweep", table,
+  add_value(name + "_p", found.p, "1", fmt::format("of no {} inside the sweep", name), table,
             "two lines: Simonsohn 2018, doi:10.1177/2515245918805755");
-  table.quantities.push_back({"maximum_points",
+  table.quantities.push_back({name + "_points",
                               {},
-                              std::vector{std::uint64_t{top.points}},
+                              std::vector{std::uint64_t{found.points}},
                               "1",
                               "points of the parabola",
                               ""});
-  table.notes.emplace_back("maximum", top.verdict);
+  table.notes.emplace_back(name, found.verdict);
 }
 
 void add_line(const StraightLine& line, const std::string& slope_units, const Column& quantity,
@@ -158,7 +161,8 @@ Table sweep_table(std::string name, const SweptValue& swept, const Column& quant
             table);
   add_value("pooled_sigma_dof", curve.pooled().dof, "1", "its degrees of freedom", table);
   if (curve.has_realizations()) add_scatter(curve, table);
-  add_maximum(maximum(curve), swept, quantity, table);
+  add_extremum("maximum", "highest", maximum(curve), swept, quantity, table);
+  add_extremum("minimum", "lowest", minimum(curve), swept, quantity, table);
   const std::string slope_units =
       swept.units == "1" ? quantity.units : quantity.units + " / " + swept.units;
   add_line(straight_line(curve), slope_units, quantity, table);

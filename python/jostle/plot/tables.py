@@ -121,19 +121,23 @@ def hysteresis(table: Table, *, ax: Axes | None = None) -> Axes:
 
 @takes_arguments
 def sweep(table: Table, *, ax: Axes | None = None) -> Axes:
-    """A quantity against what is swept, with its maximum where one was found."""
+    """A quantity against what is swept, with its maximum and its minimum where they were found."""
     against = next(iter(table.axes), "")
     quantity = next((name for name in table.quantities if f"{name}_error" in table), "")
     _require(table, f"{against or 'axis'} {quantity or 'quantity'} maximum_at", "jostle analyse sweep")
     ax = axes_or_current(ax)
     half = half_width(table.error(quantity), table.quantities[f"{quantity}_dof"].values)
     errorbars(ax, table[against], table[quantity], half, fmt="o-", linewidth=0.8)
-    at = float(table["maximum_at"])
-    if np.isfinite(at) and table["maximum_p"] < 0.05:
-        ax.axvline(at, color="C3", linewidth=0.8, label=f"parabola's top at {finite_text(at, '.3g')}")
-        low, high = float(table["maximum_at_low"]), float(table["maximum_at_high"])
+    for extremum, place, colour in (("maximum", "top", "C3"), ("minimum", "bottom", "C0")):
+        if f"{extremum}_at" not in table:
+            continue  # Older files have no minimum.
+        at = float(table[f"{extremum}_at"])
+        if not (np.isfinite(at) and table[f"{extremum}_p"] < 0.05):
+            continue
+        ax.axvline(at, color=colour, linewidth=0.8, label=f"parabola's {place} at {finite_text(at, '.3g')}")
+        low, high = float(table[f"{extremum}_at_low"]), float(table[f"{extremum}_at_high"])
         if np.isfinite(low) and np.isfinite(high):
-            ax.axvspan(low, high, color="C3", alpha=0.15, linewidth=0)
+            ax.axvspan(low, high, color=colour, alpha=0.15, linewidth=0)
         ax.legend(fontsize="small")
     ax.set_xlabel(label(against, table.axes[against].units))
     ax.set_ylabel(label(quantity, table.quantities[quantity].units))

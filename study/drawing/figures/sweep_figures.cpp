@@ -61,6 +61,20 @@ bool is_sweep(const TableView& table) {
   return table.is_in("analysis", "sweep") && !table.is_refused();
 }
 
+// Draws the place of a maximum or minimum that was found.
+void mark_extremum(const TableView& table, const std::string& name, const char* place,
+                   FigurePanel& panel) {
+  if (!table.has(name + "_p") || !(table.value(name + "_p") < SweepExtremum::level)) return;
+  const double at = table.value(name + "_at");
+  panel.caption += finite_text(
+      " The {} point of a parabola is at {:.3g}; dashed: it and the 95 % interval of the {}'s "
+      "place.",
+      place, at, name);
+  for (const double x : {at, table.value(name + "_at_low"), table.value(name + "_at_high")}) {
+    if (std::isfinite(x)) panel.rules.push_back({.x = x});
+  }
+}
+
 }  // namespace
 
 void add_hysteresis(const DrawnFile& file, Figures& into) {
@@ -78,31 +92,18 @@ void add_sweeps(const DrawnFile& file, Figures& into) {
     if (!is_sweep(table)) continue;
     const std::string x = table.note("against"), y = table.note("observable");
     if (!table.has_axis(x) || !table.has(y)) continue;
-    const bool pooled = table.has(y + "_pooled_error");
-    const std::string errors = y + (pooled ? "_pooled" : "");
     FigurePanel panel{
         .title = fmt::format("{} against {}", sentence(words(y)), control_label(x, "1")),
-        .caption = pooled ? "One point per sweep point; bars are 68 % intervals by the variance "
-                            "pooled over points, since few realizations know their own badly."
-                          : "One point per sweep point; bars are 68 % intervals.",
+        .caption = "One point per sweep point; bars are 68 % intervals.",
         .source = table.source(y),
         .x = {control_label(x, table.units(x))},
         .y = {axis_label(y, table.units(y))},
         .series = {{.name = "",
                     .colour = kind_colour(0),
                     .drawn = Drawn::joined_points,
-                    .rows = rows_of(table.axis(x), table.values(y), table.half_widths(errors))}}};
-    const double maximum = table.value("maximum_at");
-    if (table.value("maximum_p") < SweepMaximum::level) {
-      panel.caption += finite_text(
-          " The highest point of a parabola is at {:.3g}; dashed: it and the 95 % interval of the "
-          "maximum's place.",
-          maximum);
-      for (const double place :
-           {maximum, table.value("maximum_at_low"), table.value("maximum_at_high")}) {
-        if (std::isfinite(place)) panel.rules.push_back({.x = place});
-      }
-    }
+                    .rows = rows_of(table.axis(x), table.values(y), table.half_widths(y))}}};
+    mark_extremum(table, "maximum", "highest", panel);
+    mark_extremum(table, "minimum", "lowest", panel);
     add_panel(file, std::nullopt, std::move(panel), into, table.name());
   }
 }

@@ -199,7 +199,7 @@ std::vector<std::string> places_of(std::span<const Member> members,
 }
 
 /// Means of beds that still move are kinetic: they depend on the number of taps, and so do results
-/// of the curve. The verdict on a maximum reports it.
+/// of the curve. The verdicts on a maximum and a minimum report it.
 void add_steadiness(std::span<const Member> members, Table& table) {
   if (std::ranges::all_of(members, [](const Member& one) { return one.taps.empty(); })) return;
   const auto moving = places_of(members, Verdict::not_reached);
@@ -218,7 +218,7 @@ void add_steadiness(std::span<const Member> members, Table& table) {
       "steady", condition.empty() ? "the averaged taps are steady at all points" : condition);
   if (condition.empty()) return;
   for (auto& [key, note] : table.notes)
-    if (key == "maximum") note += "; " + condition;
+    if (key == "maximum" || key == "minimum") note += "; " + condition;
 }
 
 /// The averaged taps, and points without a value.

@@ -24,6 +24,7 @@ struct Setting {
 /// Curves that hold the truth, or find what there is.
 struct Counts {
   double maximum_of_flat = 0, maximum_of_plateau = 0;
+  double minimum_of_flat = 0, either_of_flat = 0;
   double maximum_of_bell = 0, place = 0;     // the place: of the maxima found
   double maximum_of_skewed = 0, skewed = 0;  // for bells that are no parabolas
   double unlike = 0;                         // called so where scatters are alike
@@ -67,7 +68,10 @@ Counts calibrated(const Setting& setting, std::size_t ensembles) {
   const double one = 1 / static_cast<double>(ensembles);
   for (std::size_t e = 0; e < ensembles; ++e) {
     const SweepCurve flat = curve_of(setting, e, [](double) { return 0; });
-    counts.maximum_of_flat += one * maximum(flat).found();
+    const bool high = maximum(flat).found(), low = minimum(flat).found();
+    counts.maximum_of_flat += one * high;
+    counts.minimum_of_flat += one * low;
+    counts.either_of_flat += one * (high || low);
     counts.difference += one * differs(flat);
     counts.unlike += one * (flat.p_of_equal_scatter() < 0.01);
     const SweepCurve plateau =
@@ -75,7 +79,7 @@ Counts calibrated(const Setting& setting, std::size_t ensembles) {
     counts.maximum_of_plateau += one * maximum(plateau).found();
     const auto count_place = [](const SweepCurve& curve, double truth, double& found,
                                 double& held) {
-      const SweepMaximum top = maximum(curve);
+      const SweepExtremum top = maximum(curve);
       if (!top.found()) return;
       ++found;
       held += !(top.x_low > truth) && !(top.x_high < truth);
@@ -102,19 +106,23 @@ Counts calibrated(const Setting& setting, std::size_t ensembles) {
 
 void check(const std::vector<std::size_t>& points, const std::vector<std::size_t>& realizations,
            std::size_t ensembles) {
-  fmt::print("{:>6} {:>3} {:>8} | {:^15} | {:^13} | {:^13} | {:^20} | {:>6}\n", "points", "M",
-             "streams", "maximum of", "bell", "skewed bells", "line", "pairs");
-  fmt::print("{:>19} | {:>7} {:>7} | {:>6} {:>6} | {:>6} {:>6} | {:>6} {:>6} {:>6} | {:>6}\n", "",
-             "flat", "rising", "found", "95 %", "found", "95 %", "68 %", "95 %", "F 5 %", "5 %");
+  fmt::print("{:>6} {:>3} {:>8} | {:^31} | {:^13} | {:^13} | {:^20} | {:>6}\n", "points", "M",
+             "streams", "found: max., min., either", "bell", "skewed bells", "line", "pairs");
+  fmt::print(
+      "{:>19} | {:>7} {:>7} {:>7} {:>7} | {:>6} {:>6} | {:>6} {:>6} | {:>6} {:>6} {:>6} | {:>6}\n",
+      "", "flat", "flat", "flat", "rising", "found", "95 %", "found", "95 %", "68 %", "95 %",
+      "F 5 %", "5 %");
   for (const std::size_t n : points) {
     for (const std::size_t m : realizations) {
       for (const Streams streams : {Streams::independent, Streams::matched}) {
         const Counts counts = calibrated({n, m, streams}, ensembles);
         const bool matched = streams == Streams::matched;
         fmt::print(
-            "{:>6} {:>3} {:>8} | {:>6.1f}% {:>6.1f}% | {:>5.1f}% {:>5.1f}% | {:>5.1f}% {:>5.1f}% | "
+            "{:>6} {:>3} {:>8} | {:>6.1f}% {:>6.1f}% {:>6.1f}% {:>6.1f}% | {:>5.1f}% {:>5.1f}% | "
+            "{:>5.1f}% {:>5.1f}% | "
             "{:>5.1f}% {:>5.1f}% {:>5.1f}% | {:>5.1f}%\n",
             n, m, matched ? "matched" : "indep.", 100 * counts.maximum_of_flat,
+            100 * counts.minimum_of_flat, 100 * counts.either_of_flat,
             100 * counts.maximum_of_plateau, 100 * counts.maximum_of_bell, 100 * counts.place,
             100 * counts.maximum_of_skewed, 100 * counts.skewed, 100 * counts.slope_68,
             100 * counts.slope_95, 100 * counts.straight, 100 * counts.difference);
@@ -122,6 +130,7 @@ void check(const std::vector<std::size_t>& points, const std::vector<std::size_t
         const double of_5 = 3 * std::sqrt(0.05 * 0.95 / static_cast<double>(ensembles));
         const double of_68 = 3 * std::sqrt(0.68 * 0.32 / static_cast<double>(ensembles));
         CHECK(counts.maximum_of_flat <= 0.05 + of_5);
+        CHECK(counts.minimum_of_flat <= 0.05 + of_5);
         CHECK(counts.maximum_of_plateau <= 0.05 + of_5);
         CHECK(counts.difference <= 0.05 + of_5);
         CHECK(counts.unlike <= 0.01 + 3 * std::sqrt(0.01 / static_cast<double>(ensembles)));

@@ -49,7 +49,7 @@ TEST_CASE("The maximum of a parabola is found exactly, its points in any order")
   const SweepCurve curve(x, y, known(std::vector<double>(x.size(), 1e-6)));
   CHECK(curve.n_points() == 6);
   for (const std::size_t points : {3, 5, 50}) {
-    const SweepMaximum top = maximum(curve, points);
+    const SweepExtremum top = maximum(curve, points);
     CHECK(top.points == std::min<std::size_t>(points, 6));
     CHECK(top.x == Approx(0.17).epsilon(1e-11));
     CHECK(top.y == Approx(0.6).epsilon(1e-13));
@@ -64,7 +64,7 @@ TEST_CASE("With matched streams, what shifts a packing at all points leaves its 
     values.emplace_back();
     for (const double shift : {-0.02, 0.01, 0.03, -0.01}) values.back().push_back(bell(x) + shift);
   }
-  const SweepMaximum matched = maximum(SweepCurve(strengths, values, Streams::matched));
+  const SweepExtremum matched = maximum(SweepCurve(strengths, values, Streams::matched));
   CHECK(matched.x == Approx(0.17).epsilon(1e-10));
   // Without noise the highest point is known, and the maximum lies between its neighbours.
   std::vector<double> heights;
@@ -72,7 +72,7 @@ TEST_CASE("With matched streams, what shifts a packing at all points leaves its 
   const auto top = std::ranges::max_element(heights) - heights.begin();
   CHECK(matched.x_low == strengths[static_cast<std::size_t>(top - 1)]);
   CHECK(matched.x_high == strengths[static_cast<std::size_t>(top + 1)]);
-  const SweepMaximum independent = maximum(SweepCurve(strengths, values, Streams::independent));
+  const SweepExtremum independent = maximum(SweepCurve(strengths, values, Streams::independent));
   CHECK_FALSE(independent.found());
   CHECK(independent.verdict.starts_with("cannot decide with 4 realizations: "));
   CHECK(std::isnan(independent.x_low));
@@ -86,7 +86,7 @@ TEST_CASE("A point with one realization has the error that is pooled over the ot
   CHECK_FALSE(curve.error().front().known());
   CHECK(straight_line(curve).slope_error.dof == 35);
   // One packing alone is common to all points of matched streams: nothing is known of its scatter.
-  const SweepMaximum one = maximum(SweepCurve(strengths, values, Streams::matched), 6);
+  const SweepExtremum one = maximum(SweepCurve(strengths, values, Streams::matched), 6);
   CHECK(std::isfinite(one.x));
   CHECK(std::isnan(one.p));
   for (auto& realizations : values) realizations.resize(1);
@@ -114,11 +114,11 @@ TEST_CASE("A maximum whose place may be the sweep's end says so") {
     }
     return maximum(SweepCurve({0.15, 0.25, 0.4}, values, Streams::independent), 3);
   };
-  const SweepMaximum near = verdict(0.02);  // 1.85 errors below the highest point
+  const SweepExtremum near = verdict(0.02);  // 1.85 errors below the highest point
   CHECK(near.found());
   CHECK(std::isnan(near.x_high));
   CHECK(near.verdict.ends_with("reaches an end of the sweep"));
-  const SweepMaximum far = verdict(-0.02);
+  const SweepExtremum far = verdict(-0.02);
   CHECK(far.x_high == 0.4);
   CHECK(far.verdict.ends_with("two lines)"));
 }
@@ -126,20 +126,57 @@ TEST_CASE("A maximum whose place may be the sweep's end says so") {
 TEST_CASE("What is no maximum is not called one") {
   const std::vector<double> x = {1, 2, 3, 4, 5};
   const std::vector<ErrorOf> error = known(std::vector<double>(5, 0.1));
-  const SweepMaximum rising = maximum(SweepCurve(x, {1, 2, 3, 4, 5}, error));
+  const SweepExtremum rising = maximum(SweepCurve(x, {1, 2, 3, 4, 5}, error));
   CHECK(std::isnan(rising.x));
   CHECK(std::isnan(rising.x_high));
   CHECK(rising.verdict.starts_with("none found: the largest value is at an end of the sweep"));
   CHECK(rising.verdict.ends_with(")"));
-  CHECK(maximum(SweepCurve(x, {3, 2, 1, 1.5, 2}, error))
-            .verdict.ends_with("; the least value is inside, at 3: no minimum is tested"));
-  const SweepMaximum flat = maximum(SweepCurve(x, {1, 1.01, 1.02, 1.01, 1}, error));
+  CHECK(maximum(SweepCurve(x, {3, 2, 1, 1.5, 2}, error)).verdict.ends_with("two lines)"));
+  const SweepExtremum flat = maximum(SweepCurve(x, {1, 1.01, 1.02, 1.01, 1}, error));
   CHECK(flat.p > 0.1);
   CHECK(flat.verdict.starts_with("cannot decide: chance alone"));
   CHECK(maximum(SweepCurve({1, 2}, {1, 2}, known({1, 1}))).verdict ==
         "cannot decide: fewer than three different strengths");
   CHECK(maximum(SweepCurve(x, {1, 2, 3, 2, 1}, std::vector<ErrorOf>(5))).verdict ==
         "cannot decide: there are no errors to test a maximum by");
+}
+
+TEST_CASE("A minimum is the maximum of the reflected curve, in words of its own") {
+  for (const Streams streams : {Streams::independent, Streams::matched}) {
+    for (const std::size_t realizations : {3, 12}) {
+      const auto bell = noisy_bell(21, realizations, 0.003);
+      auto valley = bell;
+      for (auto& values : valley) {
+        for (double& value : values) value = 1 - value;
+      }
+      const SweepExtremum top = maximum(SweepCurve(strengths, bell, streams));
+      const SweepExtremum bottom = minimum(SweepCurve(strengths, valley, streams));
+      REQUIRE(top.found());
+      CHECK(bottom.x == Approx(top.x).epsilon(1e-9));
+      CHECK(bottom.y == Approx(1 - top.y).epsilon(1e-9));
+      CHECK(bottom.p == Approx(top.p).epsilon(1e-6));
+      CHECK(bottom.x_low == top.x_low);
+      CHECK(bottom.x_high == top.x_high);
+      CHECK(bottom.verdict.starts_with("found inside the sweep: the curve falls to it and rises"));
+      CHECK_FALSE(maximum(SweepCurve(strengths, valley, streams)).found());
+      CHECK_FALSE(minimum(SweepCurve(strengths, bell, streams)).found());
+    }
+  }
+  const std::vector<double> x = {1, 2, 3, 4, 5};
+  const std::vector<ErrorOf> error = known(std::vector<double>(5, 0.1));
+  CHECK(minimum(SweepCurve(x, {1, 2, 3, 4, 5}, error))
+            .verdict.starts_with("none found: the least value is at an end of the sweep"));
+  CHECK(minimum(SweepCurve(x, {1, 0.99, 0.98, 0.99, 1}, error))
+            .verdict.starts_with("cannot decide: chance alone would often give such a minimum"));
+}
+
+TEST_CASE("A curve whose extreme value is at an end has no extremum inside, whatever a parabola") {
+  // Values that rise ever faster: a parabola's lowest point is inside.
+  const std::vector<double> x = {1, 2, 3, 4, 5};
+  const SweepExtremum bottom =
+      minimum(SweepCurve(x, {1, 1.01, 1.2, 2, 4}, known(std::vector<double>(5, 0.01))));
+  CHECK_FALSE(std::isnan(bottom.x));
+  CHECK(bottom.verdict.starts_with("none found: the least value is at an end of the sweep"));
 }
 
 TEST_CASE("Errors of few degrees of freedom are pooled, and count points alike") {
