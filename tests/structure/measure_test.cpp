@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/geometry.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 constexpr StreamKey points{20'261};
 
-const Measurement& part(const std::vector<Measurement>& all, const std::string& name) {
+const Measurement& part(const std::vector<Measurement>& all, std::string_view name) {
   const auto found = std::ranges::find(all, name, &Measurement::part);
   REQUIRE(found != all.end());
   return *found;
@@ -34,7 +35,7 @@ double single(const Measurement& measurement, const std::string& name) {
   return quantity->values[0];
 }
 
-const std::vector<double>& along(const Measurement& measurement, const std::string& name) {
+const std::vector<double>& along(const Measurement& measurement, std::string_view name) {
   const MeasuredQuantity* quantity = measurement.find(name);
   REQUIRE(quantity != nullptr);
   return quantity->values;

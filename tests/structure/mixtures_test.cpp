@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <voro++/voro++.hh>
 
 #include "engine/bed/boundary.hpp"
@@ -20,13 +21,13 @@ namespace {
 
 constexpr StreamKey points{7};
 
-const Measurement& part(const std::vector<Measurement>& all, const std::string& name) {
+const Measurement& part(const std::vector<Measurement>& all, std::string_view name) {
   const auto found = std::ranges::find(all, name, &Measurement::part);
   REQUIRE(found != all.end());
   return *found;
 }
 
-const std::vector<double>& values(const Measurement& measurement, const std::string& name) {
+const std::vector<double>& values(const Measurement& measurement, std::string_view name) {
   const MeasuredQuantity* quantity = measurement.find(name);
   REQUIRE(quantity != nullptr);
   return quantity->values;
@@ -82,7 +83,7 @@ TEST_CASE("structure: sizes of diameter 1 give the values of equal spheres") {
     for (const MeasuredQuantity& quantity : expected[k].quantities) {
       if (quantity.name == "exponent_from_gap" || quantity.name == "gap_exponent") continue;
       INFO(quantity.name);
-      const std::vector<double>& other = values(found[k], std::string(quantity.name));
+      const std::vector<double>& other = values(found[k], quantity.name);
       REQUIRE(other.size() == quantity.values.size());
       for (std::size_t i = 0; i < other.size(); ++i) {
         if (std::isnan(quantity.values[i])) {

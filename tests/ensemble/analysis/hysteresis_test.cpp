@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string_view>
 
 #include "tests/ensemble/noise.hpp"
 
@@ -10,7 +11,7 @@ namespace {
 
 const Column fraction = {"bulk_fraction", "1", "bulk packing fraction", "somebody 2001"};
 
-const Quantity& quantity(const Table& table, const std::string& name) {
+const Quantity& quantity(const Table& table, std::string_view name) {
   for (const Quantity& found : table.quantities) {
     if (found.name == name) return found;
   }
@@ -18,7 +19,7 @@ const Quantity& quantity(const Table& table, const std::string& name) {
   return table.quantities.front();
 }
 
-const std::vector<double>& numbers(const Table& table, const std::string& name) {
+const std::vector<double>& numbers(const Table& table, std::string_view name) {
   return std::get<std::vector<double>>(quantity(table, name).values);
 }
 

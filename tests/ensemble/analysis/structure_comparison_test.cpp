@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "tests/ensemble/noise.hpp"
@@ -16,7 +17,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 template <class Value>
-const std::vector<Value>& column(const Table& table, const std::string& name) {
+const std::vector<Value>& column(const Table& table, std::string_view name) {
   for (const Quantity& one : table.quantities) {
     if (one.name == name) return std::get<std::vector<Value>>(one.values);
   }

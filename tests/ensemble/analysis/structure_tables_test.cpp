@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "fitting/models/models.hpp"
 #include "structure/density/gradient.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-const Quantity& quantity(const Table& table, const std::string& name) {
+const Quantity& quantity(const Table& table, std::string_view name) {
   for (const Quantity& one : table.quantities) {
     if (one.name == name) return one;
   }
@@ -21,7 +22,7 @@ const Quantity& quantity(const Table& table, const std::string& name) {
   return table.quantities.front();
 }
 
-const std::vector<double>& numbers(const Table& table, const std::string& name) {
+const std::vector<double>& numbers(const Table& table, std::string_view name) {
   return std::get<std::vector<double>>(quantity(table, name).values);
 }
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <string_view>
 
 #include "fitting/models/models.hpp"
 #include "fitting/report.hpp"
@@ -150,7 +151,7 @@ double allowed(int ensembles) {
   return 0.05 + 3 * std::sqrt(0.05 * 0.95 / ensembles);
 }
 
-const Truth& truth_of(const std::string& name) {
+const Truth& truth_of(std::string_view name) {
   return *std::ranges::find(truths(), name, &Truth::name);
 }
 

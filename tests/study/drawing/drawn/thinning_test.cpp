@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
+#include <string_view>
 
 using namespace jostle;
 
@@ -47,7 +48,7 @@ Table table_of(std::size_t peak_tap, std::size_t peak_place) {
 }
 
 template <class Value>
-const std::vector<Value>& values_of(const std::vector<Quantity>& list, const std::string& name) {
+const std::vector<Value>& values_of(const std::vector<Quantity>& list, std::string_view name) {
   const auto found = std::ranges::find(list, name, &Quantity::name);
   REQUIRE(found != list.end());
   return std::get<std::vector<Value>>(found->values);
