@@ -143,7 +143,7 @@ void report_growth(int repetitions) {
   }
   fmt::print("1048576 spheres: {:.1f} million trials/s, {:.2f} of the rate at 4096, {}\n",
              median(large) / 1e6, median(ratio), verdict(median(ratio), 0.5));
-  fmt::print("    {:.0f} bytes per sphere, at most {:.0f} wanted: {}\n", bytes, most_bytes,
+  fmt::print("    {:.0f} bytes per sphere, target at most {:.0f}: {}\n", bytes, most_bytes,
              bytes <= most_bytes ? "pass" : "MISS");
 }
 

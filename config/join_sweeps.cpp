@@ -21,8 +21,8 @@ bool sweep_the_same(const std::vector<SweepAxis>& a, const std::vector<SweepAxis
   return std::ranges::equal(a, b, {}, pointers_of, pointers_of);
 }
 
-/// What two runs must share: the scene but for its name, its sweep, what the sweep replaces, and
-/// the number of realizations, which merging judges.
+/// The part that two runs must share: the scene without its name, its sweep, the values that the
+/// sweep replaces, and the number of realizations, which merging checks.
 Json shared_part(const Scene& scene) {
   Json shared = resolved(scene);
   for (const char* own : {"name", "description", "realizations", "sweep", "point_labels"})

@@ -61,12 +61,12 @@ std::string tap_text(const std::vector<ProtocolLine>& protocol, std::uint64_t nu
   return "none";
 }
 
-/// What keeps `is` from beginning with all taps of `was`; nothing if it does.
+/// The change that keeps `is` from beginning with all taps of `was`; empty if it begins with them.
 std::optional<std::string> changed_taps(const std::vector<ProtocolLine>& was,
                                         const std::vector<ProtocolLine>& is) {
   const std::uint64_t n_was = total_taps(was), n_is = total_taps(is);
   if (n_is < n_was) {
-    return fmt::format("had {}, has {}: taps can be added at the end, not taken away",
+    return fmt::format("had {}, has {}: taps can be added at the end, not removed",
                        counted(n_was, "tap"), n_is);
   }
   const std::vector<Stage> before = merged(stages(was)), after = merged(stages(is));
@@ -94,7 +94,7 @@ std::optional<std::string> changed_choice(const char* what, std::uint64_t last,
                                           const std::vector<std::uint64_t>& after) {
   for (const std::uint64_t tap : before) {
     if (!std::binary_search(after.begin(), after.end(), tap)) {
-      return fmt::format("the {} {} was taken away", what, tap);
+      return fmt::format("the {} {} was removed", what, tap);
     }
   }
   for (const std::uint64_t tap : after) {
@@ -132,8 +132,8 @@ void compare_sweeps(const Scene& was, const Scene& is, std::vector<Fault>& fault
     if (std::ranges::binary_search(ids, point_id(point))) continue;
     const std::string gone = point.values.empty() ? "the run has no sweep"
                                                   : "the point " + point_label(point) + " is gone";
-    faults.push_back({"/sweep", gone + ": values can be added to what is swept, not taken away, "
-                                       "and nothing else can be swept"});
+    faults.push_back({"/sweep", gone + ": values can be added to a sweep, not removed, "
+                                       "and its keys cannot change"});
     return;
   }
 }
@@ -174,7 +174,7 @@ std::vector<Fault> resume_faults(const ParsedScene& was, const Scene& scene,
   std::vector<Fault> faults;
   if (scene.realizations < was.scene->realizations) {
     faults.push_back(
-        {"/realizations", fmt::format("were {}, are {}: realizations can be added, not taken away",
+        {"/realizations", fmt::format("were {}, are {}: realizations can be added, not removed",
                                       was.scene->realizations, scene.realizations)});
   }
   Json before = resolved(*was.scene), after = resolved(scene);

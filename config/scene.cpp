@@ -59,11 +59,11 @@ constexpr auto engine_field = irregular(
       if (scene.grains) out["engine"] = written_engine(*scene.grains);
     },
     [](ObjectSchema& out, Definitions& definitions) {
-      out.properties["engine"] = described_as(
-          engine_schema(definitions), "Engine",
-          "What moves the spheres: Monte Carlo, with its settings in relax and relax_start, or "
-          "discrete elements.",
-          "monte_carlo", "");
+      out.properties["engine"] = described_as(engine_schema(definitions), "Engine",
+                                              "The engine that moves the spheres: Monte Carlo, "
+                                              "with its settings in relax and relax_start, or "
+                                              "discrete elements.",
+                                              "monte_carlo", "");
     });
 
 /// A relaxation, which only Monte Carlo has.
@@ -72,8 +72,8 @@ void read_trials(const Reader& in, std::string_view key, bool grains, Relaxation
   if (!relax) return;
   if (grains)
     relax->fault(
-        "trials are of Monte Carlo: discrete elements come to rest as their key \"rest\" says; "
-        "leave this out");
+        "applies only to Monte Carlo: discrete elements come to rest by their key \"rest\"; remove "
+        "this key");
   read_part(*relax, relaxation);
 }
 
@@ -132,9 +132,9 @@ constexpr auto snapshots_field = irregular(
       if (sweeps_engine(scene) && keeps_default(scene)) snapshots.erase("keep");
     },
     [](ObjectSchema& out, Definitions& definitions) {
-      out.properties["snapshots"] = described_as(
-          part_schema(std::type_identity<SnapshotChoice>{}, definitions), "Snapshots",
-          "What is kept of the packing at chosen taps; tap 0 is the start.", Json::object(), "");
+      out.properties["snapshots"] =
+          described_as(part_schema(std::type_identity<SnapshotChoice>{}, definitions), "Snapshots",
+                       "Packings kept at chosen taps; tap 0 is the start.", Json::object(), "");
     });
 
 constexpr auto spheres_field = irregular(
@@ -189,7 +189,7 @@ constexpr auto observe_field = irregular(
     [](ObjectSchema& out, Definitions& definitions) {
       out.properties["observe"] =
           described_as(value_schema(observe_form, definitions), "Observables",
-                       "What is measured at the start and after every tap.",
+                       "Observables measured at the start and after every tap.",
                        written_default(observe_form, Scene{}.observables), "");
     });
 
@@ -202,10 +202,10 @@ constexpr auto identity_fields() {
                  "digit first"},
             "Short name of the study", {.title = "Name", .examples = R"(["quickstart"])"}),
       field("description", &Scene::description, Prose{},
-            "What the study is, for people. A list of strings is joined by blanks",
+            "A description of the study for readers. A list of strings is joined by blanks",
             {.title = "Description"}),
       field("seed", &Scene::seed, Whole{},
-            "Of all random numbers: the same scene with the same seed gives the same bytes",
+            "Seed of all random numbers: the same scene with the same seed gives the same bytes",
             {.required = "a whole number; the same scene with the same seed gives the same bytes",
              .title = "Seed",
              .examples = "[20010222]"}),
@@ -221,7 +221,7 @@ constexpr auto identity_fields() {
 constexpr auto simulation_fields() {
   return std::tuple{
       field("container", &Scene::container, OneOf<Container>{},
-            "What holds the spheres; a floor at z = 0 and an open top, but for fully_periodic",
+            "Container of the spheres; a floor at z = 0 and an open top, except for fully_periodic",
             {.required = "an object with the key sides",
              .title = "Container",
              .examples = R"([{"sides": "periodic", "width": 16}, {"sides": "walls", "width": 16},
@@ -280,13 +280,14 @@ constexpr auto measured_fields() {
             "run ends",
             {.title = "Fits"}),
       field("analyse", &Scene::analyse, Object<Analyses>{},
-            "What the run ends with, at every sweep point: docs/reference/analyses.md",
+            "Analyses at the end of the run, at every sweep point: docs/reference/analyses.md",
             {.title = "Analyses"}),
-      field("structure", &Scene::structure, Object<StructureSettings>{},
-            "What the run ends with measuring in the kept packings, averaged over realizations; "
-            "parts that are not named are not measured. docs/reference/structure.md",
-            {.title = "Structure",
-             .examples = R"([{"profile": {}, "pores": {"bin_width": 0.01}}])"})};
+      field(
+          "structure", &Scene::structure, Object<StructureSettings>{},
+          "Parts of structure that the run measures in the kept packings at its end, averaged over "
+          "realizations; parts that are not named are not measured. docs/reference/structure.md",
+          {.title = "Structure",
+           .examples = R"([{"profile": {}, "pores": {"bin_width": 0.01}}])"})};
 }
 
 constexpr auto scene_fields() {

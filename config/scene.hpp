@@ -27,7 +27,7 @@ namespace jostle::inline config {
 /// "start": {"file": ...}: a packing saved by an earlier run (.h5, .hdf5: point, realization, tap)
 /// or extended XYZ (.xyz, .extxyz: frame).
 struct PackingFile {
-  std::string path;         // as written; relative to the folder of the scene file
+  std::string path;         // relative to the folder of the scene file
   std::uint32_t point = 0;  // index of the sweep point of the earlier run
   std::uint32_t realization = 0;
   std::optional<std::uint64_t> tap;    // a snapshot of the earlier run; absent: its last
@@ -100,7 +100,7 @@ struct SnapshotChoice {
   double contact_cut = 1.05, bin_width = 0.1;  // diameters
   // Of discrete elements, which keep them by default:
   bool velocities = false, contacts = false, granular_temperature = false, forces = false;
-  bool driven_temperature = false;  // of discrete elements, on request
+  bool driven_temperature = false;  // discrete elements only
   bool operator==(const SnapshotChoice&) const = default;
 };
 
@@ -145,8 +145,8 @@ std::vector<std::string> competing_laws();
 
 /// Laws fitted to the mean of an observable against taps, at every sweep point, when a run ends.
 struct FitRequest {
-  std::string observable;           // as the scene calls it
-  std::vector<std::string> models;  // of docs/reference/laws.md; or {"all"}: those that compete
+  std::string observable;           // a name of an observable of the scene
+  std::vector<std::string> models;  // docs/reference/laws.md; {"all"}: those that compete
   std::uint64_t first = 1;          // tap
   std::optional<std::uint64_t> last = std::nullopt;  // tap; absent: the last one
   bool operator==(const FitRequest&) const = default;
@@ -184,8 +184,8 @@ struct Analyses {
   std::vector<AnalysisRequest<HysteresisSettings>> hysteresis;
   std::vector<AnalysisRequest<OrderingSettings>> ordering;  // also over the points
   std::vector<AnalysisRequest<SweepSettings>> sweep;        // over the points
-  std::vector<AnalysisRequest<VolumesSettings>> volumes;    // likewise
-  std::vector<AnalysisRequest<MemorySettings>> memory;      // likewise
+  std::vector<AnalysisRequest<VolumesSettings>> volumes;    // also over the points
+  std::vector<AnalysisRequest<MemorySettings>> memory;      // also over the points
   bool operator==(const Analyses&) const = default;
 
   /// Later kinds are written only where there are any, so that runs of earlier versions can be
@@ -202,12 +202,12 @@ struct Analyses {
 struct Scene {
   std::string name = "scene", description;
   std::uint64_t seed = 0;
-  std::uint32_t realizations = 1;  // of every sweep point, at first if there is `until`
+  std::uint32_t realizations = 1;  // per sweep point; with `until`, at first
   Streams streams = Streams::independent;
 
   Container container;
-  std::uint32_t n_spheres = 0;     // of all kinds
-  std::vector<MixtureKind> kinds;  // of a mixture; empty: equal spheres, or the sizes of a file
+  std::uint32_t n_spheres = 0;     // all kinds together
+  std::vector<MixtureKind> kinds;  // empty: equal spheres, or the sizes of a file
   PourOrder pour_order = PourOrder::random;
   StartChoice start;
   std::vector<ProtocolLine> protocol;
@@ -220,7 +220,7 @@ struct Scene {
   SnapshotChoice snapshots;
   std::optional<MotionChoice> motion;
   std::vector<SweepAxis> sweep;
-  std::vector<std::string> point_labels;  // of the sweep points, in their order; empty: by values
+  std::vector<std::string> point_labels;  // by sweep point; empty: made of the values
   TargetPrecision until;
   std::vector<FitRequest> fits;
   Analyses analyse;
@@ -234,7 +234,7 @@ EngineSettings engine_of(const Scene& scene);
 /// A scene, or every fault that keeps the text from being one.
 struct ParsedScene {
   std::optional<Scene> scene;
-  std::vector<Scene> points;  // of each sweep point, in their order; without a sweep the scene
+  std::vector<Scene> points;  // by sweep point; without a sweep only the scene
   std::vector<Fault> faults;  // empty if and only if there is a scene
 };
 
@@ -242,10 +242,10 @@ struct ParsedScene {
 /// keys, wrong types, values out of range or at odds with each other, also at single sweep points.
 ParsedScene parse_scene(std::string_view json_text);
 
-/// The same of what is no text any more: every fault but those of syntax.
+/// Like parse_scene(), for parsed JSON: reports every fault except those of syntax.
 ParsedScene checked_scene(const Json& document);
 
-/// What is measured of packings, or every fault that keeps the text from being that.
+/// The parts of structure to measure, or every fault of the text.
 struct ParsedStructure {
   std::optional<StructureSettings> settings;
   std::vector<Fault> faults;  // empty if and only if there are settings
@@ -260,7 +260,7 @@ Json resolved(const StructureSettings& settings);
 /// Names of the parts that are measured: "profile", "pores", ...
 std::vector<std::string> parts_of(const StructureSettings& settings);
 
-/// The settings with exactly the named parts; those that they lack have their defaults.
+/// The settings with exactly the named parts; parts missing in `settings` have their defaults.
 StructureSettings with_parts(StructureSettings settings, std::span<const std::string> names);
 
 /// The scene with every default written out, keys in a fixed order: checked_scene(resolved(s))

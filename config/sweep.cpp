@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t most_points = 100'000;
 
-/// What a sweep may set: what is simulated and measured. The rest belongs to the study as a whole.
+/// Keys that a sweep may set: simulation and measurement. The other keys belong to the whole study.
 const std::vector<std::string> swept_parts{"container", "spheres",  "pour_order", "start",
                                            "protocol",  "engine",   "relax",      "relax_start",
                                            "observe",   "snapshots"};
@@ -49,7 +49,7 @@ std::string location(const Json& written_sweep, const std::string& pointer) {
   return pointer_to(pointer_to("/sweep/zip", group), pointer);
 }
 
-/// Tells of a point that has grains where the scene has trials: `relax` is not for them.
+/// True if the point has grains and the scene has trials: `relax` does not apply to grains.
 bool has_grains(const SweepPoint& point) {
   return std::ranges::any_of(point.values, [](const auto& set) {
     const auto& [pointer, value] = set;
@@ -146,7 +146,7 @@ class SweepCheck {
     return true;
   }
 
-  /// What a results file lists of every point.
+  /// Checks the size of the lists that a results file has of all points.
   void check_amounts(std::uint64_t points) {
     const auto check = [&](const char* pointer, const char* what, std::uint64_t n,
                            std::uint64_t most) {
@@ -305,7 +305,7 @@ std::vector<Scene> point_scenes(const Scene& scene) {
   if (scene.sweep.empty()) return {scene};
   const Json base = resolved(scene);
   std::vector<Scene> scenes;
-  std::vector<Fault> none;  // of a scene that was checked
+  std::vector<Fault> none;  // the scene was checked
   for (const SweepPoint& point : sweep_points(scene.sweep))
     scenes.push_back(scene_at(base, point, none));
   return scenes;

@@ -19,8 +19,8 @@ auto state_from(std::span<const std::byte> bytes, Read&& read) {
     return state;
   } catch (const std::out_of_range&) {
     throw StateError(
-        "the state it goes on from is of another engine, damaged, or written by another version of "
-        "jostle: resume with the one that wrote it");
+        "the stored state belongs to another engine, is damaged, or was written by another version "
+        "of jostle: resume with the version that wrote it");
   }
 }
 

@@ -34,7 +34,7 @@ struct SpreadTarget {
         keyed_number<SpreadTarget, Spread, 2>(
             &SpreadTarget::at_most, &SpreadTarget::spread, spread_names,
             {spread_number, spread_number},
-            {"Of the mean over realizations, at most",
+            {"Standard error of the mean over realizations, at most",
              "Population deviation of realizations, at most. It does not shrink with their number"},
             true)};
   }

@@ -98,7 +98,7 @@ std::vector<std::string> faults(const Curve& curve) {
   std::vector<std::string> found;
   const std::size_t n = curve.t.size();
   if (n == 0)
-    found.push_back("the curve has no points: none was measured, or none lies in the range");
+    found.push_back("the curve has no points: none was measured, or none is in the range");
   if (curve.x.size() != n || (!curve.sigma.empty() && curve.sigma.size() != n)) {
     std::ostringstream text;
     text << "the columns differ in length: t " << n << ", X " << curve.x.size() << ", sigma "

@@ -259,13 +259,12 @@ void Fitter::remark_on_order(Fit& fit) const {
   if (canonical == values_) return;
   std::ostringstream text;
   text.precision(4);
-  text << "With a parameter fixed the others came out in another order than this law's: in its "
-          "order "
-          "the same curve reads";
+  text << "A fixed parameter keeps the others from the order of this law. In that order the same "
+          "curve has";
   for (std::size_t j = 0; j < canonical.size(); ++j) {
     text << (j == 0 ? " " : ", ") << model_.parameters()[j].name << " = " << canonical[j];
   }
-  text << ", and what names and meanings say of order does not hold here.";
+  text << "; meanings of parameters that assume the order do not apply.";
   fit.remarks.push_back(text.str());
 }
 
@@ -294,7 +293,8 @@ Fit Fitter::finish() {
       fit.remarks.push_back(std::string("The fit did not settle: ") + describe(fit.reason) + ".");
     }
     if (fit.dof == 0) {
-      fit.remarks.push_back("As many parameters as points: there are no errors to estimate.");
+      fit.remarks.push_back(
+          "The law has as many parameters as there are points: errors cannot be estimated.");
     }
     if (any_fixed) remark_on_order(fit);
     judge(curve_, fit);

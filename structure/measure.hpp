@@ -82,12 +82,13 @@ struct CoordinationSettings {
 
   static constexpr About about{"coordination", "Neighbours within a cut, and against the cut"};
   static constexpr auto fields() {
-    return std::tuple{field("cut", &CoordinationSettings::cut, Number{between(1, 3), "diameters"},
-                            "Distance of the centres of neighbours, at most"),
-                      field("largest_cut", &CoordinationSettings::largest_cut,
-                            Number{between(1, 3), "diameters"}, "Range of the curve above 1"),
-                      field("step", &CoordinationSettings::step,
-                            Number{between(0.001, 1), "diameters"}, "Of the curve")};
+    return std::tuple{
+        field("cut", &CoordinationSettings::cut, Number{between(1, 3), "diameters"},
+              "Distance of the centres of neighbours, at most"),
+        field("largest_cut", &CoordinationSettings::largest_cut, Number{between(1, 3), "diameters"},
+              "Range of the curve above 1"),
+        field("step", &CoordinationSettings::step, Number{between(0.001, 1), "diameters"},
+              "Step of the curve of neighbours against the cut")};
   }
 };
 
@@ -113,7 +114,7 @@ struct OrderSettings {
   static constexpr About about{"order", "q4, q6, w6; fcc, hcp and disordered spheres, by height"};
   static constexpr auto fields() {
     return std::tuple{field("bin_width", &OrderSettings::bin_width,
-                            Number{between(0.1, 1000), "diameters"}, "Of heights")};
+                            Number{between(0.1, 1000), "diameters"}, "Bin width of heights")};
   }
 };
 
@@ -136,8 +137,9 @@ struct GapsSettings {
         field("tolerance", &GapsSettings::tolerance, Number{between(0, 0.2)},
               "Gap up to which spheres touch, diameters: of the single values"),
         field("least_contacts", &GapsSettings::least_contacts, Whole{1, 12},
-              "Of a sphere that is no rattler. Default: 3 in beds, which have weight; 4 in a fully "
-              "periodic box, which has none"),
+              "Contacts of a sphere that is not a rattler, at least. Default: 3 in beds, which "
+              "have weight; "
+              "4 in a fully periodic box, which has none"),
         field("window", &GapsSettings::window, Bounds{above(0, 1e6), between(0, 1e6)},
               "Gaps whose exponent is sought, diameters; low below high, and above 0, which has no "
               "logarithm")};
@@ -186,7 +188,8 @@ struct PoresSettings {
                                "Sizes of pores, sites of close packing, the exponential tail"};
   static constexpr auto fields() {
     return std::tuple{
-        field("bin_width", &PoresSettings::bin_width, Number{between(0.001, 0.5)}, "Of xi"),
+        field("bin_width", &PoresSettings::bin_width, Number{between(0.001, 0.5)},
+              "Bin width of xi"),
         field("largest", &PoresSettings::largest, Number{between(0.5, 10)}, "xi of the last bin"),
         field("merge", &PoresSettings::merge, Number{between(0, 0.1), "diameters"},
               "Vertices so close are one pore"),
@@ -205,10 +208,11 @@ struct VoidSettings {
 
   static constexpr About about{"void_probability", "P0(sigma) beside Gotoh's"};
   static constexpr auto fields() {
-    return std::tuple{field("largest", &VoidSettings::largest, Number{between(0.1, 5)}, "sigma"),
-                      field("step", &VoidSettings::step, Number{between(0.001, 1)}, "Of sigma"),
-                      field("points", &VoidSettings::points, Whole{100, 1'000'000'000},
-                            "Random points per packing")};
+    return std::tuple{
+        field("largest", &VoidSettings::largest, Number{between(0.1, 5)}, "sigma"),
+        field("step", &VoidSettings::step, Number{between(0.001, 1)}, "Step of sigma"),
+        field("points", &VoidSettings::points, Whole{100, 1'000'000'000},
+              "Random points per packing")};
   }
 };
 

@@ -142,15 +142,14 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
       {.name = "gap_exponent",
        .values = {gap_exponent(gaps, settings.window.low, settings.window.high, weights)},
        .long_name =
-           "gamma of g(1 + h) as h^-gamma, gaps in the window; no value of fewer than ten, or "
-           "where all are of one size"},
+           "gamma of g(1 + h) as h^-gamma, gaps in the window; no value for fewer than ten, or "
+           "if all have one size"},
       {.name = "contacts",
        .values = {found.all},
        .long_name = "mean number of contacts within the tolerance"},
       {.name = "rattlers",
        .values = {found.rattlers < 1 ? found.rattlers : std::nan("")},
-       .long_name =
-           "fraction of rattlers, taken away one after another, of packings with a backbone",
+       .long_name = "fraction of rattlers, removed one after another, of packings with a backbone",
        .source = donev,
        .with_packings = true},
       {.name = "backbone_contacts",

@@ -53,9 +53,9 @@ struct OrderColumn {
 constexpr const char* steinhardt = "Steinhardt et al. 1983, doi:10.1103/PhysRevB.28.784";
 constexpr const char* stukowski = "Stukowski 2012, doi:10.1088/0965-0393/20/4/045021";
 constexpr OrderColumn order_columns[] = {
-    {"fcc", "fcc_at_height", "fraction of spheres in fcc surroundings", stukowski},
-    {"hcp", "hcp_at_height", "fraction of spheres in hcp surroundings", stukowski},
-    {"disordered", "disordered_at_height", "fraction of spheres in neither", stukowski},
+    {"fcc", "fcc_at_height", "fraction of spheres with fcc order", stukowski},
+    {"hcp", "hcp_at_height", "fraction of spheres with hcp order", stukowski},
+    {"disordered", "disordered_at_height", "fraction of spheres with neither", stukowski},
     {"q4", "q4_at_height", "mean q4 of the 12 nearest neighbours", steinhardt},
     {"q6", "q6_at_height", "mean q6 of the 12 nearest neighbours", steinhardt},
     {"w6", "w6_at_height", "mean w6 of the 12 nearest neighbours", steinhardt}};

@@ -125,8 +125,8 @@ struct KindHeight {
   static constexpr About about{
       .name = "kind_height",
       .text =
-          "Mean height of the centres of a kind, weighted by volume, diameters. Of a kind of "
-          "one sphere: the height of an intruder. Stored as height_KIND"};
+          "Mean height of the centres of a kind, weighted by volume, diameters. For a kind "
+          "of one sphere it is the height of an intruder. Stored as height_KIND"};
   static constexpr auto fields() {
     return std::tuple{field("kind", &KindHeight::kind, kind_name_form, "Name of the kind",
                             {.required = "the name of a kind of spheres"})};

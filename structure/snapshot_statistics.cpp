@@ -93,8 +93,8 @@ std::size_t n_height_bins(const Packing& packing, double bin_width) {
       std::to_string(top) + " diameters make more than " +
       std::to_string(static_cast<std::uint64_t>(most_height_bins(packing))) + " bins of " +
       std::to_string(bin_width) +
-      " by height, nearly all of them empty: take wider ones, and see whether a sphere lies far "
-      "above the bed");
+      " by height, nearly all of them empty: use wider bins, and look for a sphere far above "
+      "the bed");
 }
 
 std::vector<double> height_histogram(const Packing& packing, double bin_width) {

@@ -66,7 +66,7 @@ bool is_same_file(const std::string& a, const std::string& b) {
 
 NoTapsYet::NoTapsYet(const std::string& path, Live live)
     : BadInput(
-          fmt::format("{}: its run goes on or was killed, and {}", path,
+          fmt::format("{}: its run is not finished or was killed, and {}", path,
                       live == Live::yes ? "it has no checkpoint yet" : "its file has no taps yet")),
       path_(path),
       live_(live) {}

@@ -95,7 +95,7 @@ int run_cost(const CostArguments& arguments) {
                 settings_of(arguments, output, threads, stop), display);
     if (!run.run()) {
       print_to_standard_error(
-          fmt::format("jostle: stopped by {}; --resume goes on with {}\n", stop.reason(), output));
+          fmt::format("jostle: stopped by {}; --resume continues {}\n", stop.reason(), output));
       return exit_stopped;
     }
     const CostStudy found = run.study();

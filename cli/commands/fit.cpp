@@ -139,16 +139,18 @@ std::vector<std::unique_ptr<Model>> chosen_models(const FitArguments& arguments)
 void refuse_options_of_text(const FitArguments& arguments) {
   if (arguments.realizations || arguments.gaps_asked_for) {
     throw BadInput(fmt::format(
-        "{} is of the columns of a text file; a results file knows its own realizations",
+        "{} applies only to the columns of a text file; a results file stores its own realizations",
         arguments.realizations ? "--realizations" : "--gaps"));
   }
   if (arguments.independent) {
-    throw BadInput("--independent is of the rows of a text file; taps of a run have a memory");
+    throw BadInput(
+        "--independent applies only to rows of a text file; taps of a run are correlated");
   }
   if (arguments.measured.is_wanted()) {
-    throw BadInput(fmt::format(
-        "--figures and --page are of a measured curve; jostle report {} draws kept fits",
-        arguments.input));
+    throw BadInput(
+        fmt::format("--figures and --page apply only to a measured curve; jostle report {} draws "
+                    "the stored fits of a run",
+                    arguments.input));
   }
 }
 
@@ -165,11 +167,12 @@ void refuse_options_of_results(const FitArguments& arguments) {
         arguments.input));
   }
   if (arguments.gaps_asked_for && !arguments.realizations) {
-    throw BadInput("--gaps is of the columns of realizations: give --realizations");
+    throw BadInput("--gaps applies only to columns of realizations: add --realizations");
   }
   if (arguments.independent && arguments.realizations) {
     throw BadInput(
-        "--independent is of a curve alone; errors of --realizations come from their scatter");
+        "--independent applies only to a single curve; with --realizations errors come from their "
+        "scatter");
   }
 }
 

@@ -47,7 +47,7 @@ bool is_alive(const RunStatus& status) {
 std::string state_of(const RunStatus& status) {
   if (is_alive(status)) return "running";
   if (status.state != RunState::running) return name_of(status.state);
-  return fmt::format("{}; --resume goes on", status.owner ? "killed" : "stopped");
+  return fmt::format("{}; --resume continues it", status.owner ? "killed" : "stopped");
 }
 
 Json realization_json(const RealizationSummary& one, bool alive, std::string unit) {

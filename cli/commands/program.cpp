@@ -22,7 +22,7 @@ constexpr const char* footer =
     "failed,\n"
     "the rest is stored; 4 input or output failed; 75 stopped by a signal or the time limit, "
     "--resume\n"
-    "goes on.";
+    "continues the run.";
 
 }  // namespace
 

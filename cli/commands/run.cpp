@@ -133,10 +133,10 @@ void say_which_tables_are_gone(const std::vector<std::string>& before,
   if (gone.empty()) return;
   std::string lines;
   for (const std::string& name : gone) lines.append("\n  ").append(name);
-  print_to_standard_error(
-      fmt::format("jostle: these tables were made of the data before this run, and are no longer "
-                  "in {}; make them again where they are wanted:{}\n",
-                  output, lines));
+  print_to_standard_error(fmt::format(
+      "jostle: these tables were computed from the data before this run, and were removed from {}; "
+      "compute those that you need again:{}\n",
+      output, lines));
 }
 
 /// The curve that was computed, and the commands that go on from it.

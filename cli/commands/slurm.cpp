@@ -176,8 +176,8 @@ void write_script(const SlurmArguments& arguments) {
   require_text_output("-o", arguments.output, loaded.files, arguments.force);
   if (arguments.jobs > 1 && !loaded.scene.until.targets.empty()) {
     throw BadInput(
-        "this scene runs until a target precision is reached (\"until\"), which a share of its "
-        "realizations cannot tell: take --jobs 1, or take \"until\" out");
+        "this scene runs until a target precision is reached (\"until\"), which a shard, with "
+        "a part of the realizations, cannot decide: use --jobs 1, or remove \"until\"");
   }
   constexpr std::uint32_t usual_array = 1001;  // MaxArraySize of Slurm, one more than the last task
   const std::uint64_t largest = arguments.most_tasks > 0
@@ -245,10 +245,9 @@ void add_slurm(Command& app, int& code) {
       "  jostle slurm scene.json --hours 12 --cpus 4 --jobs 2 > scene.sbatch\n"
       "  jostle slurm scene.json --hours 0.5 --cpus 1 --jobs 4 -o quick.sbatch\n"
       "\n"
-      "Time and memory come from the pilot of jostle check, up to about twenty seconds, of\n"
-      "grains up to two minutes. A job is told to stop before its time is up, goes back into the "
-      "queue and\n"
-      "goes on there.");
+      "Time and memory come from the pilot of jostle check, which takes up to about twenty\n"
+      "seconds, with grains up to two minutes. A job receives a signal before its time limit,\n"
+      "stops, goes back into the queue and continues there.");
   command.run([arguments, &code] {
     write_script(*arguments);
     code = exit_ok;

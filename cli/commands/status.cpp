@@ -82,11 +82,9 @@ void add_status(Command& app, int& code) {
       "  jostle status scene.shards     done, running, dead and missing shards, core-hours left\n"
       "  jostle status low.h5 high.h5 --json\n"
       "\n"
-      "dead: its process was killed, and a resume goes on from its checkpoints. unreadable: its "
-      "file\n"
-      "is damaged, and what is in it may be finished. The last line is the command that redoes "
-      "what\n"
-      "is missing, and nothing else.");
+      "dead: its process was killed; a resume continues from its checkpoints. unreadable: its\n"
+      "file is damaged, and may hold finished realizations. The last line is the command that\n"
+      "runs the missing part alone.");
   command.run([arguments, &code] { code = show_status(*arguments); });
 }
 

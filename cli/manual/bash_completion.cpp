@@ -147,7 +147,7 @@ std::string bash_completion(const CommandText& program) {
          function(name + "_value", values, "return 1") + "\n# The options of \"COMMAND KIND\".\n" +
          function(name + "_options", options,
                   fmt::format("printf -- '{}\\n'", option_names(program.options)).c_str()) +
-         "\n# _" + program.name + "_words COMMAND WORD: what may stand without a name.\n" +
+         "\n# _" + program.name + "_words COMMAND WORD: words allowed without a name.\n" +
          function(name + "_words", words, ":") +
          fmt::format(end, program.name, fmt::join(names_of(program.commands), " | "), kinds);
 }

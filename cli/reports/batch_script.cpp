@@ -61,7 +61,7 @@ cp --remove-destination -- "$0" "$results/.job.$SLURM_JOB_ID" &&
   mv -fT -- "$results/.job.$SLURM_JOB_ID" "$results/job.sbatch"
 
 job=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
-say() { printf '%(%F %T)T job %s on %s: %s\n' -1 "$job" "$HOSTNAME" "$*"; }
+log_line() { printf '%(%F %T)T job %s on %s: %s\n' -1 "$job" "$HOSTNAME" "$*"; }
 run= stopped= out_of_time=
 pass_on() { interrupted=yes stopped=$1; [ -z "$run" ] || kill -s "$1" "$run"; }
 trap 'out_of_time=yes; pass_on USR1' USR1
@@ -72,7 +72,7 @@ for ((shard = (SLURM_ARRAY_TASK_ID - 1) * a_task + 1, last = shard + a_task - 1;
       shard <= last && shard <= shards; ++shard)); do
   if [ -n "$stopped" ]; then left=yes; break; fi
   if [ -L "$results/$shard.log" ]; then
-    say "$results/$shard.log is a link, and no log is written through one: remove it"
+    log_line "$results/$shard.log is a link, and no log is written through one: remove it"
     worst=4
     continue
   fi
@@ -83,22 +83,22 @@ for ((shard = (SLURM_ARRAY_TASK_ID - 1) * a_task + 1, last = shard + a_task - 1;
   while interrupted=; wait "$run"; code=$?; [ -n "$interrupted" ]; do :; done
   run=
   case $code in
-    0) say "shard $shard of $shards is done" ;;
-    75) say "shard $shard of $shards is stopped"; left=yes; break ;;
-    *) say "shard $shard of $shards: exit code $code, see $results/$shard.log"; worst=$code ;;
+    0) log_line "shard $shard of $shards is done" ;;
+    75) log_line "shard $shard of $shards is stopped"; left=yes; break ;;
+    *) log_line "shard $shard of $shards: exit code $code, see $results/$shard.log"; worst=$code ;;
   esac
 done
 
 [ -n "$left" ] || exit $worst
 trap '' USR1 TERM
 if [ -z "$out_of_time" ]; then
-  say "stopped, but not for want of time: not put back into the queue"
+  log_line "stopped before its time limit: not put back into the queue"
 elif [ "${SLURM_RESTART_COUNT:-0}" -ge "$most_restarts" ]; then
-  say "out of time after $most_restarts restarts: not put back into the queue again"
+  log_line "out of time after $most_restarts restarts: not put back into the queue again"
 elif scontrol requeue "$job"; then
-  say "out of time, and back in the queue"
+  log_line "out of time, and back in the queue"
 else
-  say "out of time, and cannot go back into the queue: submit it again"
+  log_line "out of time, and cannot go back into the queue: submit it again"
 fi
 exit 75
 )BASH";

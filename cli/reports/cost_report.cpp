@@ -109,13 +109,13 @@ std::string shortfall_of_the_reference(const CostOfObservable& cost) {
   const PairedBias& step = cost.last_step;
   if (step.pairs < 2) {
     return fmt::format(
-        "What the most complete setting may itself lack is not known: {} finished both it and the "
+        "The bias of the most complete setting itself is not known: {} finished both it and the "
         "setting before it.\n",
         step.pairs == 0 ? "no replicate" : "one replicate alone");
   }
   const std::string text =
       fmt::format("The step to the most complete setting: {}; ", over_replicates(step));
-  if (!is_seen(step)) return text + "what it may itself lack is below what these replicates see.\n";
+  if (!is_seen(step)) return text + "its own bias is too small for these replicates to detect.\n";
   if (!std::isfinite(cost.remainder.error)) {
     return text +
            "steps are not seen to shrink, so that it may itself be short by more than this step.\n";
@@ -177,12 +177,12 @@ std::string advice(const CostStudy& study, const CostOfObservable& cost, double 
   if (std::isinf(least)) {
     return wanted +
            ": nothing can be recommended. Steps of the ladder are not known to shrink, so that the "
-           "most complete setting may lack any amount: more replicates, or a scene whose own stop "
-           "is more complete, may tell.\n";
+           "bias of the most complete setting has no limit. Use more replicates, or a scene whose "
+           "own stop is more complete.\n";
   }
   return finite_text(
-      "{} no setting will do: the least limit of a bias, with what the most complete setting may "
-      "lack, is {:.2g}.\nMore replicates make errors of biases smaller.\n",
+      "{} no setting suffices: the least limit of a bias, that of the most complete setting "
+      "included, is {:.2g}.\nMore replicates make errors of biases smaller.\n",
       wanted, least);
 }
 

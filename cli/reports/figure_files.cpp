@@ -142,7 +142,7 @@ FiguresOfFiles figures_of_files(std::span<const ResultsFile> files, const std::s
     for (Figure& figure : drawn.figures) {
       if (files.size() > 1) figure.name = word + "-" + figure.name;
       all.figures.push_back(
-          {std::move(figure), fmt::format("Of {}: {}. Drawn by jostle {} ({})", name,
+          {std::move(figure), fmt::format("Data: {}: {}. Drawn by jostle {} ({})", name,
                                           study_words(file.study()), by.version, by.git_revision)});
     }
   }
@@ -179,7 +179,7 @@ std::string write_figures(const FittedCurve& measured, const std::string& input,
   std::vector<FigureOfFile> figures;
   for (Figure& figure : figures_of(measured).figures) {
     figures.push_back(
-        {std::move(figure), fmt::format("Of {}. Drawn by jostle {} ({})", measured.source.title,
+        {std::move(figure), fmt::format("Data: {}. Drawn by jostle {} ({})", measured.source.title,
                                         by.version, by.git_revision)});
   }
   write_all(folder, figures, {input});

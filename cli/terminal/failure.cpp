@@ -45,7 +45,7 @@ std::string text_of(const BadArgument& error) {
 }
 
 std::string text_of(const NoTapsYet& error) {
-  return fmt::format("{}{}. Finish it with {} SCENE --resume; {} says how far it is.", error.what(),
+  return fmt::format("{}{}. Finish it with {} SCENE --resume; {} shows its progress.", error.what(),
                      error.live() == Live::no ? "; --live reads its checkpoints" : "",
                      shell_words({command_line().front(), "run"}),
                      shell_words({command_line().front(), "info", operand(error.path())}));

@@ -43,7 +43,7 @@ std::string precision_line(const PrecisionStatus& status) {
   const PrecisionStatus::Target& farthest = status.farthest;
   const std::string value = std::isnan(farthest.value) ? "not known (fewer than two realizations)"
                                                        : finite_text("{:.2g}", farthest.value);
-  return finite_text("{}: target precision {}: {} of {} is {}, wanted at most {:.2g}\n",
+  return finite_text("{}: target precision {}: {} of {} is {}, target at most {:.2g}\n",
                      counted(status.realizations, "realization"), verdict, farthest.spread,
                      farthest.observable, value, farthest.at_most);
 }

@@ -112,7 +112,7 @@ void describe_keep(ObjectSchema& out, Definitions&) {
   out.properties["keep"] = described_as(
       names, "Kept data of a snapshot",
       "Velocities (and spins, with friction), contacts with their forces, granular_temperature by "
-      "height, and forces (of floor and sides, and the force-moment tensor of the bed) are of "
+      "height, and forces (of floor and sides, and the force-moment tensor of the bed) require "
       "discrete elements, which keep all of them by default; Monte Carlo keeps the first three. "
       "Velocities and contacts require positions. driven_temperature, on request, is the "
       "granular temperature while the floor moves, of half_sine and vibration.",
@@ -198,8 +198,7 @@ std::optional<std::string> keep_fault(const SnapshotChoice& snapshots, bool grai
     if (!(snapshots.*part.kept)) continue;
     if (part.of_grains && !grains)
       return fmt::format(
-          "\"{}\" is of discrete elements only: Monte Carlo has no times and no forces; leave it "
-          "out",
+          "\"{}\" requires discrete elements: Monte Carlo has no times and no forces; remove it",
           part.name);
     if (part.beside_positions && !snapshots.positions)
       return fmt::format("\"{}\" requires positions: keep positions, too", part.name);

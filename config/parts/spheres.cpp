@@ -81,8 +81,9 @@ constexpr std::tuple kind_fields{
     field("density", &MixtureKind::density, Number{between(least_density, greatest_density)},
           "Density relative to that of a sphere of mass 1 and diameter 1"),
     field("place", &MixtureKind::place, PlaceForm{},
-          "Of a single sphere: x and y, diameters, above which it is poured, before all spheres "
-          "without a place")};
+          "x and y of the place above which a single sphere is poured, diameters; it is poured "
+          "before "
+          "all spheres without a place")};
 
 }  // namespace
 

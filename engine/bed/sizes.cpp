@@ -58,7 +58,7 @@ std::optional<std::string> sizes_fault(std::span<const double> diameters,
              ": it must lie between " + in_short(least_diameter) + " and " +
              in_short(greatest_diameter);
     if (kinds[i] >= of_kinds.size())
-      return "sphere " + std::to_string(i) + " is of kind " + std::to_string(kinds[i]) + ", and " +
+      return "sphere " + std::to_string(i) + " has kind " + std::to_string(kinds[i]) + ", and " +
              std::to_string(of_kinds.size()) + " kinds exist, counted from 0";
   }
   if (diameters.empty()) return std::nullopt;

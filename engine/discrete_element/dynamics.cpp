@@ -132,7 +132,7 @@ class GrainDynamics final : public Dynamics {
   void restore(std::span<const std::byte> bytes) override {
     state_ = grain_state(bytes);
     if (state_.loop.grains.size() != packing_.centres.size())
-      throw StateError("the state it goes on from is of another number of spheres");
+      throw StateError("the stored state has another number of spheres");
     loop_->restore(state_.loop);
     state_.loop = {};
   }
@@ -193,7 +193,7 @@ class GrainDynamics final : public Dynamics {
   void check() {
     if (!loop_->is_sound())
       throw std::runtime_error(
-          "a sphere left the container, or lies deeper in another than a fifth of its diameter, "
+          "a sphere left the container, or overlaps another by more than a fifth of its diameter, "
           "after " +
           std::to_string(loop_->time() * units_.seconds) +
           " s of a tap: the contacts are too soft for the speeds (raise the stiffness), the time "

@@ -19,7 +19,8 @@ PlainLoop::PlainLoop(Packing packing, const Move& move, StreamKey key)
 }
 
 void PlainLoop::run(std::uint64_t n_trials) {
-  static_assert(std::variant_size_v<Move> == 2, "say here how the new move proposes and passes");
+  static_assert(std::variant_size_v<Move> == 2,
+                "add the proposal and the path of the new move here");
   const bool polar = std::holds_alternative<PolarMove>(move_);
   const ProposalKernels kernels = baseline::proposal_kernels();
   for (const std::uint64_t end = next_trial_ + n_trials; next_trial_ < end; ++next_trial_) {

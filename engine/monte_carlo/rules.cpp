@@ -12,7 +12,7 @@ std::optional<std::string> move_fault(const Move& move, const Container& contain
 
 std::optional<std::string> sampler_fault(Sampler sampler, const Move& move,
                                          const Container& container, SphereSizes sizes) {
-  static_assert(std::variant_size_v<Move> == 2, "say here what samplers suit the new move");
+  static_assert(std::variant_size_v<Move> == 2, "add the samplers that suit the new move here");
   if (sampler == Sampler::exhaustive) return std::nullopt;
   std::string why;
   const auto add = [&](const char* reason) {

@@ -27,7 +27,7 @@ void check_overlaps(const Packing& packing, double most_overlap) {
                                             : "sphere " + std::to_string(worst.second);
   const std::string hint =
       most_overlap > 0 ? "; \"overlap\" allows " + in_diameters(most_overlap)
-                       : "; packings of discrete elements overlap, and say how deep (\"overlap\")";
+                       : "; packings of discrete elements overlap: set \"overlap\" to the depth";
   refuse("sphere " + std::to_string(worst.first) + " overlaps " + with + " by " +
          in_diameters(worst.depth) +
          ", the deepest overlap of the packing; check that its lengths are in diameters and that "

@@ -71,7 +71,7 @@ struct SpectrumSettings {
               "Taps of a segment of Welch's average; absent: about a quarter of them"),
         field("window", &SpectrumSettings::window, word(taper_names)),
         field("detrend", &SpectrumSettings::detrending, word(detrending_names),
-              "What is taken from every segment"),
+              "Function that is subtracted from every segment"),
         field("band", &SpectrumSettings::band, Band::form,
               "Lowest and highest frequency of the slope, in 1/taps; absent: all that are sound",
               {.examples = "[[0.001, 0.1]]"})};
@@ -185,9 +185,10 @@ struct MemorySettings {
   std::vector<std::uint64_t> lags;  // last ones of windows, ascending, at least 1; empty: all
   bool operator==(const MemorySettings&) const = default;
 
-  static constexpr About about{"memory",
-                               "Whether what follows a common value depends on how it was reached: "
-                               "the last stage is common to the sweep points"};
+  static constexpr About about{
+      "memory",
+      "A test of whether the evolution after a common value depends on how it was reached: "
+      "the last stage is common to the sweep points"};
   static constexpr auto fields() {
     return std::tuple{
         field("lags", &MemorySettings::lags, TapNumbers{},

@@ -86,7 +86,7 @@ Goodness goodness(const Histogram& histogram, const std::vector<double>& expecte
 }
 
 std::string verdict(const Goodness& found, std::uint32_t realizations) {
-  if (std::isnan(found.p)) return "fitted; too few counts to tell whether the law holds";
+  if (std::isnan(found.p)) return "fitted; too few counts to test the law";
   const std::string test = finite_text("{} test over {} bins, {}", realizations > 1 ? "F" : "chi2",
                                        found.bins, p_text(found.p));
   return (found.p < doubted ? "the law does not hold: " : "the law is not refuted: ") + test;

@@ -22,7 +22,7 @@ std::string reasons_for_doubt(const SteadyState& state) {
   };
   const auto n = static_cast<double>(state.n_taps);
   if (state.trend.tests == 0) {
-    add("one realization, too short for its memory, tells nothing of a drift");
+    add("one realization, too short for its autocorrelation time, cannot test for a drift");
   } else if (!(state.detectable() <= SteadyStateTest::largest_unseen)) {
     add(state.trend.power("only "));
   }

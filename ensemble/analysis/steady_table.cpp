@@ -83,7 +83,7 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
           "deviation of the realizations' means, 1/(M - 1)"),
       one("autocorrelation_time", time.time, "taps",
           time.found() ? "integrated, 1/2 for independent taps"
-                       : "lower bound: longer than the taps can tell",
+                       : "lower bound: too long for this number of taps",
           wolff),
       one("autocorrelation_time_error", time.error, "taps", "standard error", wolff),
       one("autocorrelation_time_dof", infinite, "1", "its degrees of freedom"),

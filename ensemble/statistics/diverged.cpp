@@ -35,7 +35,7 @@ std::string diverged_parameters(const Fit& fit) {
     names += (names.empty() ? "" : ", ") + fit.estimates[j].parameter.name;
   }
   if (names.empty()) return "";
-  return "the data do not limit " + names + ": the best fit lies at infinity";
+  return "the data do not limit " + names + ": the best fit is at infinity";
 }
 
 }  // namespace jostle::inline ensemble

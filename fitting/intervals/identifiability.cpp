@@ -111,7 +111,7 @@ void remark_on_loose(Fit& fit) {
   std::ostringstream text;
   text.precision(2);
   const bool is_tied = fit.condition >= tied_condition;
-  text << (!is_tied                                ? "The data say little of "
+  text << (!is_tied                                ? "The data hardly constrain "
            : fit.condition >= not_unique_condition ? "The parameters are not unique: "
                                                    : "Parameters are correlated: ");
   for (std::size_t i = 0; i < names.size(); ++i) {

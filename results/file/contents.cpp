@@ -145,8 +145,8 @@ HashesByGroup read_hashes(hid_t file) {
   const Hdf5Handle contents = open_group(file, folder);
   if (read_number_attribute<std::uint32_t>(contents, method_attribute) != method)
     throw Hdf5Error(
-        "another program opened it for writing, and the hashes of its contents are of another "
-        "version of jostle: verify it with that one");
+        "another program opened it for writing, and the hashes of its contents come from another "
+        "version of jostle: verify it with that version");
   HashesByGroup hashes;
   for (const Member& member : members_of(contents))
     hashes[member.name] = read_numbers<Hash>(contents, member.name);

@@ -144,7 +144,7 @@ PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
     if (!exists(snapshots, name)) continue;
     const Shape shape = shape_of(open_dataset(snapshots, name));
     if (shape.size() != 3 || shape[0] != taken[0] || shape[1] != taken[1] || shape[2] == 0)
-      throw Hdf5Error(name + " does not stand along taps and realizations");
+      throw Hdf5Error(name + " does not have the axes taps and realizations");
     tables.n_bins[k] = shape[2];
   }
   return tables;
@@ -322,9 +322,9 @@ std::optional<RealizationState> ResultsFile::restart_state(RealizationId id) con
       const StudyPoint& point = study().points.at(id.point);
       if (!state.diameters.empty() &&
           state.diameters != read_drawn_diameters(impl_->file(), point, id, study().realizations))
-        throw Hdf5Error("/" + name + " goes on with spheres of other sizes than those stored");
+        throw Hdf5Error("/" + name + " continues with spheres of other sizes than those stored");
       if (state.rows != impl_->tables(id.point).rows.at(id.realization))
-        throw Hdf5Error("/" + name + " goes on from another tap than the last that is stored");
+        throw Hdf5Error("/" + name + " continues from another tap than the last that is stored");
       return state;
     } catch (const std::out_of_range&) {
       throw Hdf5Error("/" + name +

@@ -52,7 +52,7 @@ class ResultsFile::Impl {
     const auto most = std::ranges::max(tables(point).rows);
     if (shape.size() != 1 || shape[0] < most || shape[0] < 1 ||
         shape[0] > study.points.at(point).taps + 1)
-      throw Hdf5Error("tap is not as long as the columns that stand along it must be");
+      throw Hdf5Error("tap does not have the length of the columns along it");
     return shape[0];
   }
 

@@ -123,7 +123,7 @@ ContactNetwork::ContactNetwork(hid_t group, std::uint32_t n_spheres, const Conta
   const Shape steps{taps_.size()};
   ends_ = read_numbers<std::uint64_t>(contacts, "offset", &steps);
   const Shape all = shape_of(open_dataset(contacts, "first"));
-  if (all.size() != 1) throw Hdf5Error("first does not stand along the contacts");
+  if (all.size() != 1) throw Hdf5Error("first does not have the axis contact");
   for (const char* name : {"second", "overlap", "normal_force"}) require_shape(contacts, name, all);
   for (const char* name : {"normal", "tangential_force"})
     require_shape(contacts, name, {all[0], 3});

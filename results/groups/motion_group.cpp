@@ -105,11 +105,12 @@ class MotionWriter {
   }
 
   void write_largest_steps() {
-    write({"largest_step", "1",
-           "largest step of a sphere in one tap along a periodic direction, in periods; 1/2 and "
-           "more cannot be told",
-           ""},
-          {records_.n_realizations}, records_.largest_step, {&realizations_});
+    write(
+        {"largest_step", "1",
+         "largest step of a sphere in one tap along a periodic direction, in periods; steps of 1/2 "
+         "and more cannot be detected",
+         ""},
+        {records_.n_realizations}, records_.largest_step, {&realizations_});
   }
 
  private:

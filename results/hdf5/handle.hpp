@@ -71,7 +71,7 @@ auto naming_file(const std::string& path, Work&& work) {
   } catch (const Hdf5Error& error) {
     throw ResultsError(path, error.what());
   } catch (const std::out_of_range&) {
-    throw ResultsError(path, "its lists are of different lengths: not written by jostle");
+    throw ResultsError(path, "its lists have different lengths: not written by jostle");
   }
 }
 

@@ -134,7 +134,7 @@ class Continued : public StoredRealization {
         base_rows_(index_.outline.part.base_rows) {
     if (base_->n_rows() < base_rows_)
       throw ResultsError(state_path(results_path, identity_.id),
-                         "goes on from taps that the results file does not hold");
+                         "continues from taps that the results file does not hold");
     PartState& part = index_.outline.part;
     head_ = {part.status, std::move(part.reason), part.work, std::exchange(part.state, {})};
   }

@@ -144,7 +144,7 @@ void RunStore::Impl::check_shard_and_points() const {
   for (const StudyPoint& point : file->study().points)
     if (!numbers.of(point.id))
       throw ResultsError(path, fmt::format("has the sweep point {}, but the scene has not: values "
-                                           "can be added to a sweep, not taken away",
+                                           "can be added to a sweep, not removed",
                                            point.label));
   if (shard.count > 1 && !same_points(file->study(), study))
     throw ResultsError(path,
@@ -195,8 +195,8 @@ void RunStore::Impl::fold(const StoringProgress& progress) {
   if (!still_ours()) {
     const std::string elsewhere = beside(path, "." + run_id.substr(0, 8));
     write_results(elsewhere, content);
-    throw ResultsError(path, fmt::format("another file was put here while the run went on, and is "
-                                         "kept; what was computed is in {}",
+    throw ResultsError(path, fmt::format("another file was put here during the run, and is kept; "
+                                         "the computed results are in {}",
                                          elsewhere));
   }
   write_results(path, content);

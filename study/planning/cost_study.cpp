@@ -278,7 +278,7 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
          {},
          std::vector{cost.remainder.value},
          units,
-         "that the most complete setting still lacks, extrapolated where the last step is seen",
+         "bias of the most complete setting, extrapolated where the last step is detected",
          ""},
         {"remainder_error",
          {},

@@ -71,9 +71,9 @@ JobPlan plan_jobs(const SceneCost& cost, const JobRequest& request) {
   const Seconds usable = request.time_limit - plan.notice;
   if (cost.start > usable) {
     throw BadInput(
-        finite_text("a start takes about {:.2g} h, and a job has {:.2g} h until it is told to "
-                    "stop: a start that is stopped is made anew, so that none would ever end. Ask "
-                    "for more hours",
+        finite_text("a start takes about {:.2g} h, and a job has {:.2g} h until its signal to "
+                    "stop. A stopped start begins anew, so that none would ever finish: request "
+                    "more hours",
                     cost.start.count() / 3600, usable.count() / 3600));
   }
   plan.starts =

@@ -49,10 +49,9 @@ SceneRun::SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunOb
   if (!loaded.scene.until.targets.empty() && settings.shard.count > 1) {
     throw BadArgument(
         Argument::shard, "",
-        "this scene runs until a target precision is reached (\"until\"), which a share of "
-        "its realizations cannot tell. Run it whole, or take \"until\" out, run shares, merge them "
-        "and resume "
-        "the merged file with \"until\".");
+        "this scene runs until a target precision is reached (\"until\"), which a shard, with a "
+        "part of the realizations, cannot decide. Run it whole; or remove \"until\", run the "
+        "shards, merge them, and resume the merged file with \"until\".");
   }
   const std::string& output = settings.output;
   const Provenance by = provenance_of_this_run(fmt::to_string(settings.threads));

@@ -94,7 +94,7 @@ void ObservableSeries::for_each_of(const std::vector<std::uint32_t>& realization
       for (std::uint64_t t = 0; t < n_taps; ++t) series[t] = block[t * width + *next - range.first];
       if (!std::ranges::all_of(series, [](double value) { return std::isfinite(value); })) {
         throw BadInput(
-            fmt::format("{} is not a number at every tap from {} to {}: perhaps no sphere lies "
+            fmt::format("{} is not a number at every tap from {} to {}: perhaps no sphere is "
                         "where it is measured",
                         label_.name, taps.first, taps.end - 1));
       }

@@ -38,7 +38,7 @@ struct KeptEnsemble {
   std::vector<std::uint64_t> taps;
   std::uint32_t realizations = 0;
   std::function<std::vector<KeptPacking>(std::uint32_t realization)> read;  // one call at a time
-  std::uint64_t seed = 0, sweep_point = 0;                                  // of random points
+  std::uint64_t seed = 0, sweep_point = 0;                                  // for random points
 };
 
 /// Measures one packing after another, on many threads. Those of a realization are read together.
@@ -76,7 +76,8 @@ class Measurer {
     }
   }
 
-  /// Jobs come in the order of realizations: the last one read is nearly always the one wanted.
+  /// Jobs come in the order of realizations: the last one read is nearly always the next one
+  /// needed.
   std::shared_ptr<const Packings> packings_of(std::uint32_t realization) {
     const std::lock_guard lock(reading_);
     if (!read_ || read_realization_ != realization) {
@@ -163,7 +164,7 @@ std::vector<Table> tables_without_packings(const std::string& prefix,
   return tables;
 }
 
-/// Of the taps that there are, those that are named; all if none is.
+/// The taps of the file that are named; all if none is named.
 std::vector<std::uint64_t> chosen_taps(const std::string& name,
                                        const std::vector<std::uint64_t>& there,
                                        std::span<const std::uint64_t> named) {
@@ -209,8 +210,8 @@ KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
   return ensemble;
 }
 
-/// Differences between the points. A scene that cannot be read does not tell whether realizations
-/// are pairs: then there is no comparison.
+/// Differences between the points. If the scene cannot be read, it is unknown whether realizations
+/// are pairs, and there is no comparison.
 std::vector<Table> comparisons_of(const ResultsFile& file, std::span<const ComparedPoint> numbers) {
   const ParsedScene parsed = parse_scene(file.study().resolved_scene);
   if (!parsed.scene) return {};

@@ -21,13 +21,13 @@ std::vector<Table> structure_of(const ResultsFile& file, std::span<const std::ui
                                 const StructureSettings& settings,
                                 std::span<const std::uint64_t> taps, int threads);
 
-/// The same of extended XYZ files, each one realization whose frames stand for taps: tables
-/// <part>. Throws BadInput likewise, ResultsError for a file.
+/// Like the overload above, for extended XYZ files: each file is one realization, each frame a tap;
+/// tables <part>. Throws BadInput as above, ResultsError for a file.
 std::vector<Table> structure_of(std::span<const std::string> files,
                                 const StructureSettings& settings,
                                 std::span<const std::uint64_t> frames, int threads);
 
-/// What the scene of a results file asks for; no part where it asks for nothing.
+/// The parts that the scene of a results file requests; no part if it requests none.
 StructureSettings structure_asked_for(const ResultsFile& file);
 
 }  // namespace jostle::inline study

@@ -296,8 +296,8 @@ class Files(Case):
 
     def test_options_without_sense_are_refused(self):
         for arguments, message in (
-                (["real.csv", "--gaps", "drop-row"], "give --realizations"),
-                (["real.csv", "--realizations", "--independent"], "of a curve alone"),
+                (["real.csv", "--gaps", "drop-row"], "add --realizations"),
+                (["real.csv", "--realizations", "--independent"], "only to a single curve"),
                 (["real.csv", "--realizations", "--gaps", "interpolate"], "--gaps"),
                 (["real.csv"], "where realizations are asked for, t and a column of any name each")):
             with self.subTest(arguments=arguments):

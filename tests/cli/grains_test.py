@@ -198,7 +198,7 @@ class Grains(Case):
             self.assertFalse(smooth[particles]["contacts/tangential_force"][:].any())
         for change, message in (
                 ({"engine": {"monte_carlo": {}}, "protocol": []},
-                 '/snapshots/keep: "velocities" is of discrete elements only: Monte Carlo has no times'),
+                 '/snapshots/keep: "velocities" requires discrete elements: Monte Carlo has no times'),
                 ({"snapshots": {"taps": [0], "keep": ["contacts"]}},
                  '/snapshots/keep: "contacts" requires positions: keep positions, too')):
             asked = {"taps": [0], "keep": ["positions", "velocities"]}
@@ -281,7 +281,7 @@ class Grains(Case):
         text = self.jostle("check", "scene.json", "--no-pilot", environment=UNFOLDED).stdout
         self.assertIn("beds fail at 0.2 d: raise the stiffness", text)
         self.assertIn("is capped after 5 s: every tap will be", text)
-        self.assertIn("the pilot failed: a sphere left the container, or lies deeper",
+        self.assertIn("the pilot failed: a sphere left the container, or overlaps another by more",
                       self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)
 
     @unittest.skipUnless(EVERY, "ten seconds: in every case")
@@ -304,7 +304,7 @@ class Grains(Case):
 
     def test_what_does_not_go_together_is_refused(self):
         self.write(changed(GRAINS, relax={"polar": {}}))
-        self.assertIn("/relax: trials are of Monte Carlo",
+        self.assertIn("/relax: applies only to Monte Carlo",
                       self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)
 
     def test_what_their_accuracy_costs(self):
@@ -335,7 +335,7 @@ class Grains(Case):
             ended = file["observables/point_0000/mean_height"][-1, 1]
         self.assertAlmostEqual(began, ended, delta=1e-3)
         self.write(changed(again, start={"file": {"path": "poured.h5", "realization": 1}}))
-        self.assertIn('say how deep ("overlap")',
+        self.assertIn('set "overlap" to the depth',
                       self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)
         hard = changed(again, engine={"monte_carlo": {}}, relax={"polar": {}},
                        protocol=[{"tap": {"lift": 0.1}, "count": 1}])

@@ -261,7 +261,7 @@ class Data(Report):
         self.assertGreater(compared, 15)
 
     def units(self):
-        """Numbers of tables have their units, and the captions say that others have none."""
+        """Numbers of tables have their units, and captions name the numbers without units."""
         sections = {one["id"]: one["blocks"] for one in self.run_data["sections"]}
         (steady,) = [block for block in sections["steady"] if block["kind"] == "table"]
         self.assertIn("Numbers without a unit are dimensionless.", steady["caption"])

@@ -74,7 +74,7 @@ class TargetPrecision(Case):
     def test_a_share_cannot_tell_the_precision(self):
         self.write(UNTIL)
         refused = self.run_scene("--shard", "1/2", expect=BAD_INPUT)
-        self.assertIn("a share of its realizations cannot tell", refused.stderr)
+        self.assertIn("cannot decide. Run it whole", refused.stderr)
         self.assertEqual(self.files(), ["scene.json"])
 
 

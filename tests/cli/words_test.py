@@ -20,21 +20,11 @@ SOURCE = pathlib.Path(os.environ.get("SOURCE", pathlib.Path(__file__).resolve().
 ROOMS = ("bench", "cli", "cmake", "config", "docs", "engine", "ensemble", "examples", "fitting", "packages",
          "python", "report", "results", "structure", "study", "tests", "dev")
 
-# Folders and files that a rule has not reached yet. Entries are removed, never added. "start" and "private" hold
-# for comments and documents, "message" is both of them for texts in sources of C++.
+RULES = ("start", "private", "message", "per", "name", "help", "width")
+
+# Folders that the rule on names has not reached.
 NOT_YET = {
-    "start": ("config/join_sweeps.cpp", "config/resume.cpp", "config/scene.hpp", "config/sweep.cpp", "docs/validation",
-              "ensemble/analysis/sweeps", "python/jostle/plot", "report/src", "study/drawing", "study/tables",
-              "tests/cli", "tests/elsewhere", "tests/physics", "tests/python"),
-    "private": ("config/scene.hpp", "config/sweep.cpp", "docs/validation", "docs/validation.md",
-                "ensemble/analysis/sweeps", "python/jostle", "report/src", "study/drawing", "study/tables", "tests/cli",
-                "tests/packages", "tests/physics", "tests/python", "tests/report", "tests/results"),
-    "message": ("bench", "cli", "config", "engine", "ensemble", "fitting", "report", "results", "structure", "study",
-                "tests"),
-    "per": ("docs/validation",),
     "name": ("bench", "cli", "config", "engine", "ensemble", "fitting", "results", "structure", "study", "tests"),
-    "help": (),
-    "width": ("docs/validation.md",),
 }
 
 # Made from texts of the schema, to which "message" applies.
@@ -53,8 +43,8 @@ UNIT = (r"(?:[\d}%]|bytes|columns|contacts|cores|cycles|entries|files|GB|hours|j
 START = re.compile(r"(?:Of|What|Whether|That|As|So|Which|Likewise|The same|The others)\b(?![.-])")
 SENTENCES = re.compile(r"(?:^|(?<=[a-z)\d\"'`][.!?] ))(?=\w)")
 PRIVATE = re.compile(
-    r"\b(?:says?|said|tells?|telling|told|stands?(?! for|-)|stood|lies(?! (?:within|inside|outside|above|below|beyond|between)\b)|hangs? on|hung on|hold against|"
-    r"held against|mends?|mended|lacks?(?! of)|lacked|wants?|wanted|wanting|goes on|went on|"
+    r"\b(?:says?|said|tells?|telling|told|stands?(?! for|-)|stood|lies(?! (?:within|inside|outside|above|below|beyond|between|in|on|near|far)\b)|hangs? on|hung on|hold against|"
+    r"held against|mends?|mended|lacks?(?! of)|lacked|wants?(?! of\b)|wanted|wanting|goes on|went on|"
     r"know better|knows better|(?:is|are|was|were) of (?!the order)|clock of the wall|"
     r"taken away|surroundings|flatter(?:s|ed)?|(?:is|are) no (?:more )?(?:fault|loss|text|one)\b)\b", re.I)
 RATE = re.compile(rf"(?<!\w)(?<!-){UNIT} an? {PER}\b(?!-)")
@@ -217,7 +207,7 @@ def faults_of_text(text):
         yield "private", match.group()
     if text.kind == "help" and FUNCTION_WORDS.match(words):
         yield "help", words[:60]
-    if text.kind == "cell" and re.search(r"[a-z)][.!?] [A-Z]", words):
+    if text.kind == "cell" and re.search(r"(?<!\bsec)(?<=[a-z)])[.!?] [A-Z]", words):
         yield "width", f"more than one sentence in a cell: {words[:60]}"
 
 
@@ -252,7 +242,7 @@ def faults():
 
 
 def is_waiting(rule, file):
-    return any(file == entry or file.startswith(entry + "/") for entry in NOT_YET[rule])
+    return any(file == entry or file.startswith(entry + "/") for entry in NOT_YET.get(rule, ()))
 
 
 class Words(unittest.TestCase):
@@ -293,7 +283,7 @@ def main():
     if sys.argv[1:2] == ["--counts"]:
         counts = collections.Counter((room_of(file), rule) for rule, file, _, _ in faults())
         for room in ("root", *ROOMS):
-            print(f"{room:10}", *(f"{rule} {counts[room, rule]:4}" for rule in NOT_YET))
+            print(f"{room:10}", *(f"{rule} {counts[room, rule]:4}" for rule in RULES))
     elif sys.argv[1:2] == ["--list"]:
         for rule, file, line, excerpt in faults():
             if file.startswith(sys.argv[2]) and (len(sys.argv) < 4 or rule in sys.argv[3:]):

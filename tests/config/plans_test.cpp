@@ -8,7 +8,7 @@
 
 namespace jostle {
 
-TEST_CASE("A plan holds what the scene says") {
+TEST_CASE("A plan holds the values of the scene") {
   auto json = resolved(scene_of(text_of(good_scenes / "every_key.json")));
   json.erase("sweep");
   json["analyse"].erase("sweep");  // analysis over the sweep

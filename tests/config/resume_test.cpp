@@ -38,7 +38,7 @@ TEST_CASE("A resume takes the same scene, more taps, more realizations and anoth
   CHECK(faults_of([](EditedScene& scene) { scene["realizations"] = 8; }).empty());
   CHECK(faults_of([](EditedScene& scene) {
           scene["name"] = "longer";
-          scene["description"] = "The same, longer.";
+          scene["description"] = "A longer description.";
         }).empty());
   CHECK(faults_of([](EditedScene& scene) {
           scene["protocol"].push_back(EditedScene::parse(R"({"tap": {"lift": 0.3}, "count": 5})"));
@@ -64,7 +64,7 @@ TEST_CASE("A resume follows the same motion, from further origins and over furth
         "/motion: a motion origin at tap 8 was added: only those after the last tap, 130, can be "
         "(at the sweep point dilate = 0.01)\n");
   CHECK(faults("{}", R"({"lags": [1, 2]})", 0) ==
-        "/motion: the motion lag of 3 was taken away (at the sweep point dilate = 0.01)\n");
+        "/motion: the motion lag of 3 was removed (at the sweep point dilate = 0.01)\n");
   CHECK(faults("{}", R"({"layers": 6})", 0) ==
         "/motion/layers: was 5, is 6: a resumed run keeps it\n");
   CHECK(faults(nullptr, R"({"layers": 6})", 0) ==
@@ -87,7 +87,7 @@ TEST_CASE("A resume refuses taps that changed, and names the first") {
         "after "
         "the last one, 130 (at the sweep point dilate = 0.01)\n");
   CHECK(faults_of([](EditedScene& scene) { scene["protocol"][1]["count"] = 9; }) ==
-        "/protocol: had 130 taps, has 127: taps can be added at the end, not taken away (at the "
+        "/protocol: had 130 taps, has 127: taps can be added at the end, not removed (at the "
         "sweep point dilate = 0.01)\n");
   CHECK(
       faults_of([](EditedScene& scene) {
@@ -108,7 +108,7 @@ TEST_CASE("A resume refuses snapshots that changed within the taps of the run") 
         }).starts_with("/snapshots/taps: a snapshot of tap 50 was added"));
   CHECK(faults_of([](EditedScene& scene) { scene["snapshots"]["every"] = 1000; }).empty());
   CHECK(faults_of([](EditedScene& scene) { scene["snapshots"]["taps"] = {100}; }) ==
-        "/snapshots/taps: the snapshot of tap 0 was taken away (at the sweep point dilate = "
+        "/snapshots/taps: the snapshot of tap 0 was removed (at the sweep point dilate = "
         "0.01)\n");
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("A resume names everything that changed") {
   });
   CHECK(
       faults ==
-      "/realizations: were 4, are 3: realizations can be added, not taken away\n"
+      "/realizations: were 4, are 3: realizations can be added, not removed\n"
       "/seed: was 1, is 2: a resumed run keeps it\n"
       "/container/width: was 8, is 9: a resumed run keeps it\n"
       "/spheres: was 512, is 500: a resumed run keeps it\n"
@@ -144,8 +144,8 @@ TEST_CASE("A resume names everything that changed") {
       "[\"mean_height\"]: a resumed run keeps it\n"
       "/snapshots/keep: was [\"positions\",\"coordination\",\"height_histogram\"], is "
       "[\"positions\"]: a resumed run keeps it\n"
-      "/sweep: the point dilate = 0.02 is gone: values can be added to what is swept, not taken "
-      "away, and nothing else can be swept\n");
+      "/sweep: the point dilate = 0.02 is gone: values can be added to a sweep, not removed, and "
+      "its keys cannot change\n");
 }
 
 TEST_CASE("A resume takes more values of what is swept, in any order") {
@@ -160,7 +160,7 @@ TEST_CASE("A resume takes more values of what is swept, in any order") {
 }
 
 TEST_CASE("A resume takes nothing else that is swept, and tries the taps of all old points") {
-  const char* const gone = "can be added to what is swept, not taken away";
+  const char* const gone = "can be added to a sweep, not removed";
   CHECK_THAT(faults_of([](EditedScene& scene) { scene["sweep"]["/spheres"] = {512}; }),
              Catch::Contains(gone));
   CHECK_THAT(faults_of([](EditedScene& scene) { scene.erase("sweep"); }), Catch::Contains(gone));

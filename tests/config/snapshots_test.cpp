@@ -119,15 +119,16 @@ TEST_CASE("Points of both engines keep by default what each has") {
   CHECK(scene_of(resolved(scene).dump()) == scene);
 }
 
-TEST_CASE("What an engine does not have cannot be kept, nor what stands beside no positions") {
+TEST_CASE(
+    "Data that an engine does not have, or that need positions, cannot be kept without them") {
   const auto faults = [](const std::string& more) {
     return lines(parse_scene(scene_with(more)).faults);
   };
   CHECK(faults(R"("snapshots": {"keep": ["positions", "forces"]})") ==
-        "/snapshots/keep: \"forces\" is of discrete elements only: Monte Carlo has no times and no "
-        "forces; leave it out\n");
+        "/snapshots/keep: \"forces\" requires discrete elements: Monte Carlo has no times and no "
+        "forces; remove it\n");
   CHECK(faults(R"("snapshots": {"keep": ["driven_temperature"]})")
-            .starts_with("/snapshots/keep: \"driven_temperature\" is of discrete elements only"));
+            .starts_with("/snapshots/keep: \"driven_temperature\" requires discrete elements"));
   CHECK(faults(grains + R"(, "snapshots": {"keep": ["velocities"]})") ==
         "/snapshots/keep: \"velocities\" requires positions: keep positions, too\n");
   CHECK(faults(grains + R"(, "snapshots": {"keep": ["forces", "granular_temperature"]})").empty());

@@ -60,7 +60,7 @@ TEST_CASE("Zipped lists vary together and are crossed with the rest") {
   for (const Plan& plan : points) CHECK(epsilon(plan) == 0.1);
 }
 
-TEST_CASE("One zipped group may stand without a list") {
+TEST_CASE("A single zipped group needs no list") {
   const auto one = plans(R"({"zip": {"/spheres": [256, 512], "/container/width": [6, 8]}})");
   const auto listed = plans(R"({"zip": [{"/spheres": [256, 512], "/container/width": [6, 8]}]})");
   REQUIRE(one.size() == 2);

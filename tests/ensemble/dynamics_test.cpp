@@ -70,8 +70,9 @@ TEST_CASE("A state of another engine is refused, and what is stored of the reali
 
   Realization other(toy, 0, sinking(toy, 0));
   other.advance(3);
-  CHECK_THROWS_WITH(Realization(plan, 0, other.state()),
-                    Catch::Contains("another engine") && Catch::Contains("resume with the one"));
+  CHECK_THROWS_WITH(
+      Realization(plan, 0, other.state()),
+      Catch::Contains("another engine") && Catch::Contains("resume with the version"));
 
   MemorySink sink;
   sink.checkpoint(first, other.state());

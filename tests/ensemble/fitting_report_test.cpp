@@ -28,7 +28,7 @@ FirstRow start_of(const Plan& plan) {
 
 }  // namespace
 
-TEST_CASE("The report of a fitting says what moved, and the fractions before and after") {
+TEST_CASE("The report of a fitting lists moves and the fractions before and after") {
   // A column of ten in the middle of 8 x 8, and one sphere that straddles a wall at their <Z>.
   Packing poured{PeriodicBox{8, 8}, {}};
   for (int i = 0; i < 10; ++i) poured.centres.push_back({4, 4, 0.5 + i});

@@ -73,7 +73,7 @@ TEST_CASE("Sigma is the population deviation and the error that of the mean") {
   CHECK(moments.standard_error() == Approx(std::sqrt(7.0 / 9)).epsilon(1e-15));
 }
 
-TEST_CASE("Moments skip the NaN of failed realizations and say where nothing is known") {
+TEST_CASE("Moments skip the NaN of failed realizations and mark missing values") {
   Moments moments;
   CHECK(std::isnan(moments.mean()));
   CHECK(std::isnan(moments.sigma()));

@@ -47,7 +47,7 @@ RecordedRealization interrupted(const Plan& plan, RandomStream& random) {
 
 }  // namespace
 
-TEST_CASE("A realization interrupted anywhere goes on bit for bit") {
+TEST_CASE("A realization interrupted anywhere continues bit for bit") {
   RandomStream random(stream_key(7, 0, 0, Purpose::start));
   for (const auto& [name, plan] : various_plans()) {
     CAPTURE(name);
@@ -278,7 +278,7 @@ TEST_CASE("A shake records the share of lateral offsets that found no room") {
   CHECK(diagnostic(record.rows[3], "dropped_offsets") == 0);
 }
 
-TEST_CASE("A start that cannot be made says why") {
+TEST_CASE("An impossible start has a reason") {
   Plan plan = small_plan();
   plan.container = PeriodicBox{4.1, 4.3};
   plan.start = Crystal{};
@@ -286,7 +286,7 @@ TEST_CASE("A start that cannot be made says why") {
   CHECK_THROWS_AS(realization.advance(1000), StartError);
 }
 
-TEST_CASE("The Metropolis step begins anew at each tap where the move asks for it, else goes on") {
+TEST_CASE("The Metropolis step begins anew at each tap if the move requests it, else continues") {
   Plan plan = small_plan();
   plan.protocol = {{Dilate{}, 3}};
   monte_carlo(plan).relax.stop = {.rule = SweepsStop{.sweeps = 10}};

@@ -24,7 +24,7 @@ TEST_CASE("A standard error asks for what it needs, at most for twice as many") 
   CHECK(next_realizations(8, std::vector{error_of(0.0012), error_of(0.0013)}, 100) == 14);
 }
 
-TEST_CASE("Fewer than two realizations tell nothing, so they double") {
+TEST_CASE("Fewer than two realizations decide nothing, so they double") {
   CHECK(next_realizations(1, std::vector{error_of(std::numeric_limits<double>::quiet_NaN())},
                           100) == 2);
 }

@@ -106,7 +106,7 @@ TEST_CASE("every model refuses what is no curve, and survives what is a poor one
   }
 }
 
-TEST_CASE("refusals say what is wrong, and where") {
+TEST_CASE("refusals name the fault and its place") {
   const auto message = [](const Curve& curve, const FitOptions& options = {}) {
     return std::get<Refusal>(fit(InverseLog(), curve, options)).message;
   };

@@ -216,7 +216,7 @@ TEST_CASE("One error: half of the 68 % interval is Student's t times it") {
   }
 }
 
-TEST_CASE("X_inf near the limit: intervals hold the truth as they say", "[slow]") {
+TEST_CASE("X_inf near the limit: intervals hold the truth at their stated rate", "[slow]") {
   check_coverage(4, 0, never, 16);
   check_coverage(4, 0, 800, 16);
   check_coverage(3, 0.99, never, 16);
@@ -261,7 +261,7 @@ TEST_CASE("Curves without noise reach their limits in few evaluations") {
   }
 }
 
-TEST_CASE("A fit stops after so many evaluations, and says so") {
+TEST_CASE("A fit stops after its limit of evaluations, and reports it") {
   const Curve curve = approach(4, 0, 3, 1);
   FitOptions options;
   for (const long long most : {50LL, 1500LL}) {

@@ -27,7 +27,7 @@ std::pair<double, double> read_back(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("an error stands in the last digits of its value") {
+TEST_CASE("an error refers to the last digits of its value") {
   CHECK(value_with_error(0.59131, 0.0012) == "0.5913(12)");
   CHECK(value_with_error(12.345678, 0.21) == "12.35(21)");
   CHECK(value_with_error(1239.6, 85.2) == "1240(85)");
@@ -67,7 +67,7 @@ TEST_CASE("an error may be larger than its value, which may be negative") {
   CHECK(value_with_error(-0.0000123, 0.000045) == "-0.000012(45)");
 }
 
-TEST_CASE("what has no error stands alone, and what has no limit says so") {
+TEST_CASE("a value without an error is alone, and a missing limit is named") {
   CHECK(value_with_error(0.123456789, nan) == "0.123457");
   CHECK(value_with_error(0.123456789, 0) == "0.123457");
   CHECK(value_with_error(0.123456789, -1) == "0.123457");
@@ -93,7 +93,7 @@ TEST_CASE("rounding noise is 0 beside the scale of what is measured") {
   CHECK(value_with_error(1e-9 / 3, 1e-27, 1e-9) == "3.33333e-10");
 }
 
-TEST_CASE("over all decades and signs a text says the value and its error to two digits") {
+TEST_CASE("over all decades and signs a text has the value and its error to two digits") {
   for (int power = -280; power <= 280; power += 7) {
     for (const double ratio : {1e-9, 3.3e-4, 0.0996, 0.5, 0.995, 1.0, 7.7, 99.6, 1e4}) {
       for (const double mantissa : {1.0, -1.04999, 3.14159, -9.96, 9.99999}) {
@@ -110,7 +110,7 @@ TEST_CASE("over all decades and signs a text says the value and its error to two
   }
 }
 
-TEST_CASE("limits are said in words") {
+TEST_CASE("limits are written in words") {
   CHECK(limits_text(0.57431, 0.61, 5) == "0.57431 to 0.61");
   CHECK(limits_text(0.57431, infinity, 5) == "> 0.57431");
   CHECK(limits_text(-infinity, 0.61, 5) == "< 0.61");

@@ -98,7 +98,7 @@ TEST_CASE("series whose values are all equal have no spread, at any level") {
   }
 }
 
-TEST_CASE("one realization of one value has no error, and says so") {
+TEST_CASE("one realization of one value has no error, and reports it") {
   Moments moments;
   moments.add(0.6);
   CHECK(moments.mean() == 0.6);

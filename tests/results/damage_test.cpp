@@ -78,7 +78,7 @@ TEST_CASE("a truncated, empty, foreign or missing file is refused") {
   CHECK_THROWS_WITH(ResultsFile(path), Contains("No such file"));
 }
 
-TEST_CASE("a killed run goes on if nothing was damaged, with leavings of the kill beside it") {
+TEST_CASE("a killed run continues if nothing was damaged, with leavings of the kill beside it") {
   const KilledRun run;
   std::ofstream(run.state + ".0a1b2c3d.tmp") << "half a state";
   std::ofstream(run.path + ".0a1b2c3d.tmp") << "half a file";

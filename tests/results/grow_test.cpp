@@ -82,12 +82,12 @@ TEST_CASE("a run that was killed or stopped takes more sweep points, and keeps i
   CHECK(resumed_digest(path, study) == expected);
 }
 
-TEST_CASE("points cannot be taken away, and the sweep of a share cannot grow") {
+TEST_CASE("points cannot be removed, and the sweep of a share cannot grow") {
   const TemporaryFolder folder;
   const Study study = grown();
   digest_at_once(folder / "all.h5", study);
   CHECK_THROWS_WITH(RunStore::resume(folder / "all.h5", synthetic::study(), {}, provenance()),
-                    Contains("has the sweep point epsilon = ") && Contains("not taken away"));
+                    Contains("has the sweep point epsilon = ") && Contains("not removed"));
   synthetic::run_to_end(folder / "share.h5", {}, {1, 2});
   CHECK_THROWS_WITH(RunStore::resume(folder / "share.h5", study, {1, 2}, provenance()),
                     Contains("merge all shares"));

@@ -35,7 +35,7 @@ void go_on(RunStore& store, const Plan& plan, int slices) {
 
 }  // namespace
 
-TEST_CASE("columns of an engine of one's own go into the file with all that is said of them") {
+TEST_CASE("columns of an engine of one's own go into the file with their descriptions") {
   const TemporaryFolder folder;
   const Plan plan = sinking_plan();
   const Study study = sinking_study(plan);

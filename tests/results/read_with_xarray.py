@@ -36,7 +36,7 @@ def check_observables(path):
     assert table["status"].dims == ("realization",)
     assert table["status"].values.tolist() == [2, 2, 3]
     assert table["status"].attrs["flag_meanings"].split()[3] == "failed"
-    assert table["reason"].values.tolist() == ["", "", "it was told to"]
+    assert table["reason"].values.tolist() == ["", "", "requested by the test"]
     assert np.isfinite(table["mean_height"].values[:, :2]).all()
     assert np.isnan(table["mean_height"].values[:, 2]).all()
     assert len(set(table["trial_key"].values.tolist())) == 3

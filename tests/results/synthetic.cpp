@@ -185,8 +185,8 @@ void run(Sink& sink, const Study& study, RealizationId id, const Conduct& conduc
   std::uint64_t steps = 0;
   while (state.rows <= point.taps) {
     if (state.rows == conduct.fail_at_tap)
-      return sink.end(id, state,
-                      {RealizationStatus::failed, "it was told to", {0.5, 0.25, {steps, 0}}});
+      return sink.end(
+          id, state, {RealizationStatus::failed, "requested by the test", {0.5, 0.25, {steps, 0}}});
     if (steps == conduct.steps) {
       if (conduct.leave_without_end) return;
       return sink.end(id, state, {RealizationStatus::running, "", {0.5, 0.25, {steps, 0}}});

@@ -83,7 +83,7 @@ Packing spread(const Packing& all, std::size_t most) {
 
 }  // namespace
 
-TEST_CASE("Every quantity of every part stands on its places and is finite where it must be") {
+TEST_CASE("Every quantity of every part has its places and is finite where it must be") {
   const std::vector<Measurement> all = measure(reference_deposit(), all_structure(), points);
   CHECK(all.size() == 13);
   for (const Measurement& measurement : all) {
@@ -182,7 +182,7 @@ TEST_CASE("A perfect crystal is one everywhere") {
   CHECK(along(part(all, "holes"), "number_fraction")[1] == Approx(0.5).epsilon(1e-12));
 }
 
-TEST_CASE("Parts that a container does not have say so, and others are measured") {
+TEST_CASE("Parts that a container does not have are refused, and others are measured") {
   const std::vector<Measurement> all = measure(fcc(), all_structure(), points);
   CHECK(part(all, "profile").refused.find("floor") != std::string::npos);
   CHECK(part(all, "sides").refused.find("floor") != std::string::npos);
@@ -263,7 +263,7 @@ TEST_CASE("The region follows a bed lower than Philippe and Bideau's") {
   CHECK(bulk_of(fcc()) == Region{0, 4 * std::numbers::sqrt2, 0});
 }
 
-TEST_CASE("In a cylinder cells at the curved wall are left out and their excess is told") {
+TEST_CASE("In a cylinder cells at the curved wall are left out and their excess is reported") {
   Packing tube{Cylinder{6}, {}};
   for (int i = 0; i < 4 * 5 * 5; ++i) {
     const Vec3 r{0.9 + 1.05 * (i % 5), 0.9 + 1.05 * (i / 5 % 5), 0.5 + 1.05 * (i / 25)};
@@ -295,7 +295,7 @@ TEST_CASE("Spheres without twelve others have no bond order, whatever images the
   CHECK(single(crystal, "q6") == Approx(0.57452426).epsilon(1e-7));
 }
 
-TEST_CASE("Between close sides order says so, and ratios of few clusters have no value") {
+TEST_CASE("Between close sides order has a note, and ratios of few clusters have no value") {
   StructureSettings settings;
   settings.order.emplace();
   settings.clusters.emplace();

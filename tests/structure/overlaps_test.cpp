@@ -129,7 +129,7 @@ TEST_CASE("An fcc crystal pressed together has the structure of its lattice") {
   CHECK(along(part(all, "holes"), "number_fraction")[0] == Approx(0.5).epsilon(1e-12));
 }
 
-TEST_CASE("Packing fractions count what lies in two spheres twice") {
+TEST_CASE("Packing fractions count overlaps of two spheres twice") {
   // No point is in three of them: three centres are 0.549 from the middle between them.
   constexpr double apart = 0.95;
   const Packing packing = pressed_fcc(apart);

@@ -4,11 +4,11 @@
 
 using namespace jostle;
 
-TEST_CASE("A bad argument says which, what, why and what would choose") {
+TEST_CASE("A bad argument names argument, value, reason and remedy") {
   const BadArgument plain(Argument::observable, "Z", "there is none; out.h5 has X, Y.");
   CHECK(std::string(plain.what()) == "observable Z: there is none; out.h5 has X, Y.");
-  const BadArgument empty(Argument::shard, "", "a share cannot tell");
-  CHECK(std::string(empty.what()) == "shard: a share cannot tell");
+  const BadArgument empty(Argument::shard, "", "a share cannot decide");
+  CHECK(std::string(empty.what()) == "shard: a share cannot decide");
   const BadArgument other(Argument::observable, "Z", "it is at sweep point 1",
                           Argument::sweep_point);
   CHECK(std::string(other.what()) == "observable Z: it is at sweep point 1: choose a sweep point");

@@ -104,7 +104,7 @@ void add_laws(const std::vector<AgeingLaw>& laws, const std::string& prefix,
   table.quantities.push_back({prefix + "misfit", axes, std::move(misfits), "1",
                               "root mean square of a / law - 1" + which, eq_6});
   table.quantities.push_back({prefix + "verdict", axes, std::move(verdicts), "1",
-                              "what the curve says of the parameters" + which, ""});
+                              "how well the curve limits the parameters" + which, ""});
 }
 
 void add_scaled(const AgeingCurves& curves, const AgeingFits& fits, Table& table) {

@@ -240,7 +240,7 @@ AgeingExponent ageing_exponent(const LogCurves& all,
   if (about_mu.p < refuted || beside_mu.p < refuted) return no_exponent(collapse);
   const SmoothCurve best = power.at(power.best());
   const auto weights = weights_beyond(power.by_mu(best), best.basis);
-  if (!weights) return no_exponent(cannot_decide("the curves say nothing of mu"));
+  if (!weights) return no_exponent(cannot_decide("the curves do not constrain mu"));
   const ErrorOf error = error_of_sum(curves, *weights / weights->squaredNorm());
   const TestedEnds ends = tested_ends(power.values(), power.best(), error.dof,
                                       [&](double mu) { return power.t_of(mu); });

@@ -126,7 +126,7 @@ AgeTrend trend_of_b(const AgeingLeastSquares& fit) {
     }
   }
   const Eigen::VectorXd weights = beyond_others(column, slopes);
-  if (!(weights.squaredNorm() > 0)) return cannot_decide("the curves say nothing of b");
+  if (!(weights.squaredNorm() > 0)) return cannot_decide("the curves do not constrain b");
   return tested_change(curves, weights, fit.residuals(fit.best()),
                        {"b", "collapse refuted", "collapse not refuted"});
 }

@@ -138,8 +138,8 @@ std::string MemoryTest::statement(const std::string& observable, const std::stri
       *std::ranges::max_element(differences, {}, &AlignedDifference::detectable);
   if (!std::isfinite(unseen.detectable)) {
     return fmt::format(
-        "cannot decide: {} at the switch is off by the same in every realization between {} {} "
-        "and {}, so that nothing says what is left at equal value",
+        "cannot decide: {} at the switch differs by the same amount in every realization "
+        "between {} {} and {}, so that the difference at equal value has no error",
         observable, control, name_of(unseen.first), name_of(unseen.second));
   }
   const double seen = unseen.detectable;

@@ -85,7 +85,8 @@ std::string slope_verdict(const LogLogSlope& slope, const AutoregressiveSlope& m
                   time.found() ? "the same" : "this lower bound of the", time.time, memory.slope);
   if (std::isnan(memory.p)) return alone + "; no test";
   if (memory.p >= significance_level) {
-    return finite_text("{}: the slope is not told from it ({})", alone, p_text(memory.p));
+    return finite_text("{}: the slope does not differ significantly from it ({})", alone,
+                       p_text(memory.p));
   }
   return finite_text("{}: the slope differs from it ({})", alone, p_text(memory.p));
 }

@@ -20,8 +20,8 @@ namespace jostle::inline ensemble {
 /// dropped.
 class SweepCurve {
  public:
-  /// Below so many realizations per point's own scatter says too little: variances are then pooled
-  /// over points.
+  /// Below this number of realizations per point, variances are pooled over points: the scatter of
+  /// one point is too uncertain.
   static constexpr std::uint64_t fewest_for_own_error = 10;
 
   /// Any values with their standard errors, each [n_points]; a dof of 0 is an error that is
@@ -33,7 +33,7 @@ class SweepCurve {
 
   const std::vector<double>& x() const { return x_; }
   const std::vector<double>& y() const { return y_; }
-  /// Of each point by itself: over its realizations, or as given.
+  /// The error of each point: from its own realizations, or as given.
   const std::vector<ErrorOf>& error() const { return error_; }
   /// Realizations of each point; 0 where they are not known.
   const std::vector<std::uint64_t>& count() const { return count_; }
@@ -42,8 +42,8 @@ class SweepCurve {
   Streams streams() const { return streams_; }
   const std::vector<std::vector<double>>& realizations() const { return realizations_; }
 
-  /// What lines and maxima are fitted to, [n_points]: y; of matched streams the mean over those
-  /// realizations that all points have, where there are any.
+  /// The values that lines and maxima are fitted to, [n_points]: y; with matched streams the mean
+  /// over the realizations that all points have, if there are any.
   const std::vector<double>& fitted_y() const { return fitted_y_; }
   /// How points count in a fit, [n_points]: 1/error where errors are known or of
   /// `fewest_for_own_error` realizations, else by their number of realizations, never by their
@@ -55,10 +55,11 @@ class SweepCurve {
   /// `fewest_for_own_error`; else realizations shift all points alike, and what is left has one
   /// variance, pooled over points (a two-way layout without interaction).
   ErrorOf error_of(std::span<const double> coefficients) const;
-  /// Whether error_of() pools variances over points.
+  /// True if error_of() pools variances over points.
   bool pools() const;
-  /// Of one realization (of one value where they are not known), pooled over points: about the mean
-  /// of its point, and with matched streams about its own level too. None where no point has two.
+  /// The error of one realization (of one value where realizations are not known), pooled over
+  /// points: about the mean of its point, and with matched streams about its own level too. Empty
+  /// where no point has two.
   ErrorOf pooled() const { return pooled_; }
   /// -y(x): the curve turned upside down, its errors kept.
   SweepCurve reflected() const;
@@ -89,7 +90,7 @@ class SweepCurve {
 };
 
 /// The highest point of a parabola through the points about the largest y, which describes them,
-/// and where the truth can have its maximum, whatever its shape. Of a minimum: the lowest point,
+/// and where the truth can have its maximum, whatever its shape. For a minimum: the lowest point,
 /// the least y.
 struct SweepExtremum {
   double x = 0, y = 0;  // NaN without one inside the points used
@@ -122,21 +123,21 @@ struct StraightLine {
   /// From the curve's errors; without them from the scatter about the line.
   ErrorOf intercept_error, slope_error;
   double reduced_chi2;  // squares about the line over what the errors make of them; NaN without
-  double p;             // of a straight line leaving as much, F-test (Box 1954)
+  double p;             // p-value of the F-test of a straight line (Box 1954)
 };
 StraightLine straight_line(const SweepCurve& curve);
 
-/// Of two points of a curve of means over realizations.
+/// The difference of two points of a curve of means over realizations.
 struct SweepDifference {
   std::size_t from = 0, to = 0;  // points
-  double value = 0;              // of `to` less that of `from`
+  double value = 0;              // value at `to` minus value at `from`
   ErrorOf error{};
   std::uint64_t pairs = 0;      // realizations that both have; 0 for independent streams
   double p = 1, corrected = 1;  // by itself, and for the number of differences (Holm 1979)
 };
 
-/// Of all points to one, `reference`, or of neighbours. With matched streams realization by
-/// realization, Student's t of M - 1 degrees of freedom; else Welch's test.
+/// Returns the differences of all points to one, `reference`, or of neighbours. Matched streams:
+/// paired Student's t-test with M - 1 degrees of freedom; independent streams: Welch's test.
 std::vector<SweepDifference> differences(const SweepCurve& curve,
                                          std::optional<std::size_t> reference);
 
@@ -148,7 +149,7 @@ enum class ComparedPairs { all_pairs, with_first };
 /// be equal.
 std::vector<SweepDifference> differences(const SweepCurve& curve, ComparedPairs which);
 
-/// What is swept: "sqrt_epsilon", its units, and a line for people.
+/// The swept quantity: "sqrt_epsilon", its units, and a line of description.
 struct SweptValue {
   std::string name, units, long_name;
 };

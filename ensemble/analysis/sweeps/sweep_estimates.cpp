@@ -106,7 +106,7 @@ std::string realizations_of(const SweepCurve& curve) {
   return fmt::format(" with {} {}", range, most == 1 ? "realization" : "realizations");
 }
 
-/// What a verdict calls an extremum and the curve on both sides of it.
+/// Words of a verdict for an extremum and for the curve on both sides of it.
 struct ExtremumWords {
   const char *extremum, *end_value, *before, *behind, *bend;
 };

@@ -29,7 +29,7 @@ export function radiiOf(stored) {
   return radii;
 }
 
-/// Kinds of a mixture: colours of Okabe and Ito, which people with any colour vision tell apart.
+/// Kinds of a mixture: colours of Okabe and Ito, which people with any colour vision can distinguish.
 const kindColours = [[86, 180, 233], [213, 94, 0], [0, 158, 115], [240, 228, 66], [0, 114, 178], [204, 121, 167], [230, 159, 0]];
 const kindColour = (kind) => kindColours[kind % kindColours.length];
 
@@ -68,7 +68,7 @@ export function possible(packing) {
   return Object.keys(colourings).filter((name) => name === "height" || packing[name]);
 }
 
-/// What the key calls a colouring of this packing.
+/// The title of a colouring of this packing in the key.
 export function titleOf(name, packing) {
   const {title} = colourings[name];
   return typeof title === "function" ? title(packing) : title;

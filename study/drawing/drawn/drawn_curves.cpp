@@ -82,7 +82,7 @@ DrawnCurve drawn_curve(const ResultsFile& file, std::uint32_t point, const Curve
   return curve;
 }
 
-/// Numbers of the wanted sweep points that have values.
+/// Numbers of the requested sweep points that have values.
 std::vector<std::uint32_t> begun_points(const ResultsFile& file, const WantedPoints& wanted) {
   std::vector<std::uint32_t> begun;
   for (std::uint32_t p = 0; p < file.study().points.size(); ++p) {
@@ -92,7 +92,7 @@ std::vector<std::uint32_t> begun_points(const ResultsFile& file, const WantedPoi
   return begun;
 }
 
-constexpr std::size_t most_bins = 2000;  // of a histogram; of more, neighbours are joined
+constexpr std::size_t most_bins = 2000;  // per histogram; beyond it, neighbours are joined
 
 /// Means over realizations of what snapshots keep beside positions.
 class SnapshotMeans {

@@ -8,7 +8,7 @@
 #include "ensemble/analysis/table.hpp"
 #include "results/file/results_file.hpp"
 
-// What of a results file is drawn: the page and the figures show the same.
+// The part of a results file that the page and the figures draw.
 namespace jostle::inline study {
 
 /// Numbers that are drawn of one file.
@@ -47,7 +47,7 @@ struct DrawnHeights {
   std::vector<double> n;
 };
 
-/// What the snapshots of a sweep point keep beside positions, as means over realizations.
+/// Quantities of the snapshots of a sweep point beside positions, as means over realizations.
 struct DrawnSnapshots {
   std::uint32_t point = 0;
   std::vector<std::uint64_t> taps;
@@ -66,27 +66,28 @@ struct DrawnTable {
 /// unfinished run not all that were planned.
 std::vector<std::uint32_t> realizations_with_taps(const ResultsFile& file, std::uint32_t point);
 
-/// Sweep points that are wanted; none: all.
+/// Requested sweep points; empty: all.
 using WantedPoints = std::vector<std::uint32_t>;
 
-/// Curves of the sweep points that have values: thinned to what there is room for, and then left
-/// out at some points, evenly spread. What is left out is said in `left_out`.
+/// Curves of the sweep points that have values. To fit the room, curves are first thinned, then
+/// omitted at some points, evenly spread. `left_out` receives a sentence per omission.
 std::vector<DrawnCurve> drawn_curves(const ResultsFile& file, const DrawnRoom& room,
                                      const WantedPoints& wanted,
                                      std::vector<std::string>& left_out);
 
-/// Of at most 24 sweep points and 64 realizations of each, with at most 6 histograms.
+/// Snapshots of at most 24 sweep points and 64 realizations each, with at most 6 histograms.
 std::vector<DrawnSnapshots> drawn_snapshots(const ResultsFile& file, const WantedPoints& wanted,
                                             std::vector<std::string>& left_out);
 
-/// The derived tables with at most about `room` numbers and texts: thinned along their axes, and
-/// then left out at some sweep points, evenly spread. What is left out is said in `left_out`.
+/// The derived tables, with at most about `room` numbers and texts. To fit, they are first thinned
+/// along their axes, then omitted at some sweep points, evenly spread. `left_out` receives a
+/// sentence per omission.
 std::vector<DrawnTable> drawn_tables(const ResultsFile& file, const DrawnRoom& room,
                                      const WantedPoints& wanted,
                                      std::vector<std::string>& left_out);
 
-/// Whether the strength of the taps changes on the way: later taps then count as much as early
-/// ones.
+/// True if the strength of the taps changes during the protocol: later taps then count as much as
+/// early ones.
 bool changes_strength(const ResultsFile& file);
 
 }  // namespace jostle::inline study

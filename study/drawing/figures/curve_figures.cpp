@@ -16,7 +16,7 @@ bool is_any_finite(const std::vector<double>& values) {
   return std::ranges::any_of(values, [](double value) { return std::isfinite(value); });
 }
 
-/// Names of the columns that any sweep point has of the wanted kind.
+/// Names of the columns of this kind that any sweep point has.
 template <class Wanted>
 std::vector<std::string> names_of(const DrawnFile& file, Wanted wanted) {
   std::vector<std::string> names;

@@ -74,7 +74,7 @@ DrawnFile::DrawnFile(const ResultsFile& file, const DrawnRoom& room,
       drawn_points_(drawn),
       changes_strength_(changes_strength(file)) {
   for (const DrawnTable& one : kept_) tables_.emplace_back(one);
-  for (const TableView& table : tables_) {  // of a study of cost, the points are settings
+  for (const TableView& table : tables_) {  // in a study of cost, the points are settings
     if (table.is_in("analysis", "cost") && table.axis_texts("setting").size() == labels_.size()) {
       labels_ = table.axis_texts("setting");
       break;

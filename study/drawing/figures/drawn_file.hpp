@@ -16,7 +16,7 @@ namespace jostle::inline study {
 struct ShownPoint {
   std::uint32_t number;
   std::string label;    // empty where the file has but one
-  FigureColour colour;  // the same in every figure
+  FigureColour colour;  // equal in every figure
 };
 
 inline constexpr std::size_t most_shown = 8;  // sweep points in one figure on paper
@@ -28,7 +28,7 @@ enum class DrawnPoints { few, all };
 /// One results file, as far as it is drawn: a chapter of the page.
 class DrawnFile {
  public:
-  /// `points`: the sweep points that are wanted; none: all that there is room for.
+  /// `points`: the requested sweep points; empty: all that fit the room.
   DrawnFile(const ResultsFile& file, const DrawnRoom& room,
             const std::vector<std::uint32_t>& points, DrawnPoints drawn);
   /// Tables that no results file holds, as fits of a measured curve.
@@ -41,10 +41,10 @@ class DrawnFile {
   const std::vector<TableView>& tables() const { return tables_; }
   /// Tables of a kind, as "ageing" of "analysis", but for refused ones; in the order of the file.
   std::vector<TableView> made_of(const std::string& group, const std::string& kind) const;
-  /// The same of "fits", whose first word is an observable.
+  /// Tables of "fits", whose first word is an observable.
   std::vector<TableView> made_of(const std::string& group) const;
 
-  /// Those whose curves stand in one figure.
+  /// The sweep points whose curves share one figure.
   std::vector<ShownPoint> shown_points() const;
   /// Those of the numbers that get a figure each, ascending.
   std::vector<std::uint32_t> chosen(std::vector<std::uint32_t> numbers) const;
@@ -53,15 +53,15 @@ class DrawnFile {
   const DrawnColumn* column(const std::string& name) const;
 
   std::uint32_t n_realizations() const { return n_realizations_; }
-  /// Whether there are more sweep points than figures show.
+  /// True if there are more sweep points than figures show.
   bool has_other_points() const {
     return drawn_points_ == DrawnPoints::few && curves_.size() > most_shown;
   }
   std::size_t n_points() const { return labels_.size(); }
-  /// What a sweep point is called: its swept values; of a study of cost its setting.
+  /// The name of a sweep point: its swept values, or in a study of cost its setting.
   std::string label(std::uint32_t point) const;
   FigureAxis tap_axis() const;
-  /// What is not drawn, one sentence each.
+  /// One sentence per omission.
   const std::vector<std::string>& left_out() const { return left_out_; }
 
  private:
@@ -76,15 +76,15 @@ class DrawnFile {
   bool changes_strength_ = false;
 };
 
-/// Its first letter as of a sentence; "Values" where there is no text.
+/// The text with a capital first letter; "Values" for an empty text.
 std::string sentence(std::string text);
 /// "mean height <Z> (diameter)".
 std::string axis_label(const std::string& name, const std::string& units);
-/// Of a strength of taps, "sqrt_epsilon": "√ε"; what is none in words.
+/// The symbol of a strength of taps: "√ε" for "sqrt_epsilon"; other quantities in words.
 std::string control_symbol(const std::string& name);
 /// "strength of the taps γ (diameter)".
 std::string control_label(const std::string& name, const std::string& units);
-/// Which strength a table has as a quantity; none: empty.
+/// The strength that a table has as a quantity, or an empty text.
 std::string control_of(const TableView& table);
 /// " (diameter)"; nothing where there is no unit.
 std::string unit_text(const std::string& units);

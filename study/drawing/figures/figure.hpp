@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-// What a figure of results shows, whoever draws it.
+// The contents of a figure, independent of the program that draws it.
 namespace jostle::inline study {
 
 inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
@@ -23,7 +23,7 @@ struct FigureAxis {
   std::string label{};  // with units; "N_c" has a subscript
   AxisKind kind = AxisKind::linear;
   bool from_zero = false;
-  std::vector<std::string> names{};  // of AxisKind::names, at 0, 1, 2, ...
+  std::vector<std::string> names{};  // AxisKind::names: labels at 0, 1, 2, ...
   // Ends of the axis, where the data do not decide; what is drawn beyond is clipped.
   std::optional<double> low{}, high{};
 };
@@ -59,7 +59,7 @@ struct FigureSeries {
   std::size_t dash = 0;  // 0: solid
   std::size_t symbol = 0;
   bool hollow = false;
-  bool has_band = true;   // of the errors of a line
+  bool has_band = true;   // a line with a band of its errors
   bool is_guide = false;  // a line for the eye: no value of the file
   bool is_thin = false;   // one realization beside the mean: a thin line, not in the key
   bool has_labels = false;
@@ -84,9 +84,9 @@ inline constexpr const char* comparison_subject = "comparison";
 
 /// One panel, or several over one x axis.
 struct Figure {
-  std::string name;  // of its files: lower-case letters, digits and '-'
+  std::string name;  // names its files: lower-case letters, digits and '-'
   std::vector<FigurePanel> panels{};
-  std::string section{};                 // of the page: "compaction", "ageing", "voronoi", ...
+  std::string section{};                 // section of the page: "compaction", "ageing", ...
   std::optional<std::uint32_t> point{};  // where it shows one sweep point
   std::string subject{};                 // the table that it draws, or the observable of several
 };

@@ -21,7 +21,7 @@ std::string file_word(const std::string& text);
 struct DrawnFigures {
   std::vector<Figure> figures;
   std::vector<std::string> left_out;  // one sentence each
-  bool has_other_points = false;      // that can be requested
+  bool has_other_points = false;      // more sweep points can be requested
 };
 DrawnFigures figures_of(const ResultsFile& file, const std::vector<std::uint32_t>& points,
                         std::size_t n_files);

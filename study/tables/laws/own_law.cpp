@@ -54,7 +54,8 @@ std::vector<std::string> faults_of_the_formula(const OwnLaw& law) {
     } else if (!name.is_function && name.text == "t") {
       has_t = true;
     } else if (!name.is_function && contains(known, name.text)) {
-      faults.push_back(fmt::format("the function {} stands without its parentheses", name.text));
+      faults.push_back(
+          fmt::format("the function {0} needs parentheses with its argument: {0}(...)", name.text));
     } else if (!name.is_function && name.text != "pi" && !contains(parameters, name.text)) {
       faults.push_back(
           fmt::format("the parameter {0} has no start: give a value, as {0}=1, from "

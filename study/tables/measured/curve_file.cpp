@@ -206,10 +206,11 @@ Curve mean_of(const std::string& path, Rows rows, const ColumnRoles& roles, Gaps
     notes.push_back(
         fmt::format("{} in which a realization has no value: left out.", counted_rows(dropped)));
   } else if (n_missing > 0) {
-    notes.push_back(fmt::format(
-        "{} of {} values are missing: each mean is of the realizations present, corrected for the "
-        "offsets between realizations.",
-        n_missing, rows.values.size()));
+    notes.push_back(
+        fmt::format("{} of {} values are missing: each mean is over the realizations present, "
+                    "corrected for the "
+                    "offsets between realizations.",
+                    n_missing, rows.values.size()));
   }
   if (kept.size() < 2) {
     throw BadInput(fmt::format(

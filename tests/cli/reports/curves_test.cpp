@@ -28,7 +28,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("A logarithm is a straight line on an axis of decades, and tap 0 stands apart") {
+TEST_CASE("A logarithm is a straight line on an axis of decades, and tap 0 is apart") {
   const auto lines = lines_of(curve_text("X", logarithm(1000), 40, Glyphs::ascii));
   REQUIRE(lines.size() == 10);
   CHECK(lines[0] == "X over taps");

@@ -16,7 +16,7 @@ TEST_CASE("Durations are read with units, summed, seconds by default") {
   CHECK(parse_duration("250ms").value().count() == Approx(0.25));
 }
 
-TEST_CASE("What is no duration is refused") {
+TEST_CASE("A text that is not a duration is refused") {
   for (const char* text :
        {"", "h", "-5s", "5 s", "5x", "1h-2m", "inf", "nan", "1e400", "s5", "1h30", "2d0", "1m1",
         "30m1h", "1h1h", "1m1m", "11574d12h", "9999999999999999999999"}) {

@@ -38,7 +38,7 @@ TEST_CASE("Effects are named with their settings") {
                                 "analyse, structure\n"));
 }
 
-TEST_CASE("A value that the sweep replaces is swept, wherever it stands") {
+TEST_CASE("A value that the sweep replaces is swept, at any place") {
   const std::string text = effects_text(Json::parse(
       R"({"container": {"sides": "periodic", "width": [8, 9]},
           "protocol": [{"tap": {"dilate": 0.02}, "count": 5}, {"tap": {"lift": 1}, "count": 7}],

@@ -38,7 +38,7 @@ TEST_CASE("The next commands are those that make sense for a scene") {
         "analyse hysteresis, structure");
 }
 
-TEST_CASE("What a scene does itself is not proposed again, but the page that shows it") {
+TEST_CASE("Steps that a scene does itself are not proposed again, except its page") {
   const std::string one = R"({"protocol": [{"tap": {"dilate": 0.05}, "count": 9}], )";
   CHECK(proposed(one + R"("fits": [{"observable": "mean_height"}]})") == "analyse ageing, report");
   CHECK(proposed(one + R"("analyse": {"ageing": [{"observable": "mean_height"}]}})") ==

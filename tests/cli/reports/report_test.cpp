@@ -71,7 +71,7 @@ std::string fitting_line_of(const std::vector<double>& before) {
 
 }  // namespace
 
-TEST_CASE("A report tells what fitting did, and never a number that there is not") {
+TEST_CASE("A report shows the effect of fitting, and never a number that does not exist") {
   const double nan = std::nan("");
   CHECK(fitting_line_of({0.6, 0.62}).find("away from the walls 0.6100 -> 0.6000") !=
         std::string::npos);
@@ -83,7 +83,7 @@ TEST_CASE("A report tells what fitting did, and never a number that there is not
   CHECK(shallow.find("nan") == std::string::npos);
 }
 
-TEST_CASE("A report says where taps make a bed grow without end") {
+TEST_CASE("A report warns where taps make a bed grow without end") {
   CHECK(report_of_height(49).find("<Z> has grown") == std::string::npos);
   CHECK(report_of_height(51).find("<Z> has grown from 5 d to 51 d") != std::string::npos);
 }
@@ -99,7 +99,7 @@ TEST_CASE("A report has the number of realizations per row where not all reached
   CHECK(whole.find("\n\nepsilon = 0\ntap   mean_height") != std::string::npos);
 }
 
-TEST_CASE("Of many realizations that failed, a report tells the first and counts the others") {
+TEST_CASE("A report shows the first of many failed realizations and counts the others") {
   const auto failures = [](std::uint32_t n) {
     const TemporaryFolder folder;
     const Study study = synthetic::study({.points = 1, .realizations = n, .snapshot_taps = {}});
@@ -138,7 +138,7 @@ TEST_CASE("A report shows the columns of an engine as they ask for") {
   CHECK(text.find("\ntaps lost 43.8 % of it\n") != std::string::npos);
 }
 
-TEST_CASE("Of a long sweep some points are shown, and all that failed") {
+TEST_CASE("Some points of a long sweep are shown, and all failed ones") {
   const TemporaryFolder folder;
   const Study study = synthetic::study({.points = 101, .realizations = 1, .snapshot_taps = {}});
   const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());

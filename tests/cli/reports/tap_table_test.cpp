@@ -39,7 +39,7 @@ TEST_CASE("Few columns are the observables, and what has room of the engine's") 
         "  1   3.7524(87)  0.5413(21)\n");
 }
 
-TEST_CASE("Observables are never left out: they stand below") {
+TEST_CASE("Observables are never left out: they follow below") {
   CHECK(tap_table(two_taps(), {.width = 20}) ==
         "tap  mean_height\n"
         "  0   3.7524(87)\n"
@@ -57,7 +57,7 @@ TEST_CASE("All columns have sigma beside every observable, however wide") {
         "  1   3.7524(87)  0.0246  0.5413(21)  0.006  6125.0\n");
 }
 
-TEST_CASE("A column without a value, or without an error, says so") {
+TEST_CASE("A column without a value, or without an error, is marked") {
   PointSeries one = two_taps();
   one.columns[0].mean[1] = std::nan("");
   one.columns[1].error[1] = std::nan("");
@@ -68,7 +68,7 @@ TEST_CASE("A column without a value, or without an error, says so") {
         "  1  1            -      0.5413  6125.0\n");
 }
 
-TEST_CASE("One realization of many says so at every tap, and has no deviation") {
+TEST_CASE("One realization of many is marked at every tap, and has no deviation") {
   PointSeries one = two_taps();
   one.columns.resize(1);
   one.columns[0].count = one.reached = {1, 1};

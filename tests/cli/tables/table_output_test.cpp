@@ -74,7 +74,7 @@ TEST_CASE("A brief table leaves long columns out") {
         std::string::npos);
 }
 
-TEST_CASE("A table says where it has no rows") {
+TEST_CASE("A table without rows has a note") {
   Table table = example();
   table.axes[1].values = std::vector<std::uint64_t>();
   table.quantities[2].values = std::vector<double>();
@@ -84,14 +84,14 @@ TEST_CASE("A table says where it has no rows") {
   }
 }
 
-TEST_CASE("What was found stands first") {
+TEST_CASE("Results come first") {
   Table table = example();
   table.notes = {{"law", "a logarithm"}, {"verdict", "it ages"}};
   CHECK(table_text(table, {}).starts_with(
       "point_0000/ageing\n  verdict                it ages\n  law "));
 }
 
-TEST_CASE("Sentences stand above the numbers, once for all rows that say the same") {
+TEST_CASE("Sentences precede the numbers, once for all rows with equal text") {
   Table table = example();
   const std::string said = "the data set no limit on either side of it";
   table.quantities.push_back(
@@ -115,7 +115,7 @@ TEST_CASE("Few columns are those that have room, and the others are named") {
   CHECK(all.find("--wide") == std::string::npos);
 }
 
-TEST_CASE("Of few columns none is without a value, and no test stands beside its verdict") {
+TEST_CASE("A narrow table has no empty column, and no test beside its verdict") {
   Table table = example();
   const double none = std::nan("");
   table.notes = {{"ageing_verdict", "it ages (p = 0.02)"}};

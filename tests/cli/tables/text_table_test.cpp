@@ -14,7 +14,7 @@ TEST_CASE("Columns are flush right and as wide as their longest cell") {
         "4000            -\n");
 }
 
-TEST_CASE("Columns that find no room stand below, behind the keys again") {
+TEST_CASE("Columns without room follow below, after the keys again") {
   TextTable table({"tap", "M", "mean_height", "bulk_fraction"}, 2);
   table.add({"0", "3", "7.5", "0.58"});
   table.add({"400", "2", "7.25", "0.6"});

@@ -13,7 +13,7 @@ TEST_CASE("Long lines go on below at a word, two further in") {
   CHECK(wrapped("\n\n", 20) == "\n\n");
 }
 
-TEST_CASE("The second of two columns goes on below itself") {
+TEST_CASE("The second of two columns continues below itself") {
   CHECK(wrapped("  seed   a b c d e f g", 20) == "  seed   a b c d e f\n         g");
 }
 

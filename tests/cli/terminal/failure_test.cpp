@@ -9,12 +9,12 @@
 
 using namespace jostle;
 
-TEST_CASE("Errors of the library are said by the names of options") {
+TEST_CASE("Errors of the library name options") {
   CHECK(failure_text(BadInput("a sentence")) == "a sentence");
   CHECK(failure_text(BadArgument(Argument::observable, "Z", "there is none.")) ==
         "--observable Z: there is none.");
-  CHECK(failure_text(BadArgument(Argument::shard, "", "no share can tell.")) ==
-        "--shard: no share can tell.");
+  CHECK(failure_text(BadArgument(Argument::shard, "", "no share can decide.")) ==
+        "--shard: no share can decide.");
   CHECK(failure_text(BadArgument(Argument::observable, "Z", "it is at sweep point 1",
                                  Argument::sweep_point)) ==
         "--observable Z: it is at sweep point 1: choose one with --sweep-point");
@@ -33,7 +33,7 @@ TEST_CASE("Errors of the library are said by the names of options") {
         "out.h5: exists already; choose another name, or replace it (--force)");
 }
 
-TEST_CASE("Memory that ran out is said with what to do") {
+TEST_CASE("A message of exhausted memory contains a remedy") {
   CHECK(failure_text(std::bad_alloc()).starts_with("out of memory; raise the limit"));
 }
 

@@ -23,7 +23,7 @@ TEST_CASE("The work of several engines is not added up") {
         "3/8 done, 0 running, 0 failed; taps 100/400; 1 min 0 s left");
 }
 
-TEST_CASE("Nothing is said of the time left before the first tap") {
+TEST_CASE("No remaining time is shown before the first tap") {
   Progress progress;
   const WorkAhead ahead{.realizations = 1, .taps = 10};
   CHECK(progress_line(progress, ahead, 0, std::chrono::seconds(20)) ==

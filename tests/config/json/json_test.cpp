@@ -68,7 +68,7 @@ TEST_CASE("A pointer leads to a value or nowhere") {
   CHECK(at("/a") == R"([{"b/c":1},"new"])");
 }
 
-TEST_CASE("A value of another kind says what it is") {
+TEST_CASE("A value of another kind is named") {
   CHECK_THROWS_WITH(Json(1).text(), "expected a string, found a number");
   CHECK_THROWS_WITH(Json::array().members(), "expected an object, found a list");
   CHECK_THROWS_WITH(Json::object().at("seed"), "the key \"seed\" is missing");

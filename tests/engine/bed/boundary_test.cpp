@@ -19,7 +19,7 @@ std::vector<Container> containers() {
 
 }  // namespace
 
-TEST_CASE("A boundary says of each container where it ends") {
+TEST_CASE("A boundary knows the ends of each container") {
   const Boundary periodic(PeriodicBox{4, 5});
   CHECK(periodic.periodic_sides());
   CHECK(periodic.has_floor());

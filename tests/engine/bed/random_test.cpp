@@ -31,7 +31,7 @@ TEST_CASE("a key is the documented chain of SplitMix64 steps") {
   CHECK(stream_key(1, 2, 3, Purpose::trials) == StreamKey{0x4621364dd0a66f0f});
 }
 
-TEST_CASE("a stream goes on from its position") {
+TEST_CASE("a stream continues from its position") {
   RandomStream stream(stream_key(7, 0, 0, Purpose::start));
   for (int k = 0; k < 5; ++k) stream.uniform();
   RandomStream resumed(stream_key(7, 0, 0, Purpose::start), stream.position());

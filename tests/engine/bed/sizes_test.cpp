@@ -78,7 +78,7 @@ TEST_CASE("wrong sizes are rejected with what is wrong") {
     CHECK(fault({1, bad}, {0, 0}, one).starts_with("sphere 1 has the diameter"));
   CHECK(fault({0.5, 5.01}, {0, 0}, one).find("ratio must not exceed 10") != std::string::npos);
   CHECK(fault({1, 1}, {0}, one).find("kinds of 1 spheres") != std::string::npos);
-  CHECK(fault({1}, {1}, one) == "sphere 0 is of kind 1, and 1 kinds exist, counted from 0");
+  CHECK(fault({1}, {1}, one) == "sphere 0 has kind 1, and 1 kinds exist, counted from 0");
   CHECK(fault({1}, {0}, {{"", 1}}).find("has no name") != std::string::npos);
   CHECK(fault({1}, {0}, {{"a", 1}, {"a", 1}}).find("two kinds") != std::string::npos);
   for (const double bad : {nan, 0.0, -1.0, 2000.0})

@@ -57,7 +57,7 @@ TEST_CASE("a fully periodic box holds all of every sphere, those on its ends too
   CHECK(solids_fraction(packing, {0, 4}) == Approx(3 * sphere_volume / 36).epsilon(1e-14));
 }
 
-TEST_CASE("a cylinder's fraction is of its round footprint") {
+TEST_CASE("a cylinder's fraction uses its round footprint") {
   const Packing packing{Cylinder{3}, {{1.5, 1.5, 0.5}}};
   CHECK(solids_fraction(packing, {0, 1}) ==
         Approx(sphere_volume / (std::numbers::pi * 2.25)).epsilon(1e-14));

@@ -79,7 +79,7 @@ TEST_CASE("grains come to rest and are tapped, the same however they are sliced 
   CHECK(straight->effort().units % 100 == 0);
 }
 
-TEST_CASE("a shake of grains says how many offsets found no room") {
+TEST_CASE("a shake of grains counts the offsets without room") {
   auto shaken = grains({});
   shaken->load(dilute_column(PeriodicBox{4, 4}, 50, 1));
   shaken->settle(RandomSettle{});
@@ -267,5 +267,6 @@ TEST_CASE("spheres that start deep in each other end with a reason") {
   dynamics = grains(soft);
   dynamics->load({WalledBox{4, 4}, {{2, 2, 1}, {2, 2, 1.75}}});
   dynamics->settle(RandomSettle{});
-  CHECK_THROWS_WITH(settled_values(*dynamics, 1000), Catch::Contains("lies deeper in another"));
+  CHECK_THROWS_WITH(settled_values(*dynamics, 1000),
+                    Catch::Contains("overlaps another by more than a fifth"));
 }

@@ -147,7 +147,7 @@ TEST_CASE("a bed falls between walls as by brute force, to the bit, on every ins
   }
 }
 
-TEST_CASE("a bed goes on from any step of a tap as if it had not been stopped") {
+TEST_CASE("a bed continues from any step of a tap as if it had not been stopped") {
   for (const Container& container :
        {Container{PeriodicBox{4, 4}}, Container{WalledBox{4, 4}}, Container{Cylinder{4.5}},
         Container{PeriodicBox{2.05, 6}}, Container{Plates{4, 3.5}}}) {

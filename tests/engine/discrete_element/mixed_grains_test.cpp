@@ -136,7 +136,7 @@ TEST_CASE("grains with sizes of diameter 1 move as equal ones, bit for bit") {
   }
 }
 
-TEST_CASE("a mixture goes on from any step of a tap as if it had not been stopped") {
+TEST_CASE("a mixture continues from any step of a tap as if it had not been stopped") {
   for (const Container& container : {Container{PeriodicBox{6.2, 6.4}}, Container{WalledBox{4, 4}},
                                      Container{Cylinder{4.5}}, Container{Plates{6.2, 3.5}}}) {
     const Packing start = mixed_column(container, 40, 0.6, 5, 9, 3);

@@ -233,7 +233,7 @@ TEST_CASE("the mean height of a mixture is weighted by volume while it relaxes")
   CHECK(loop->solids_fraction({0, 3}) == solids_fraction(end, {0, 3}));
 }
 
-TEST_CASE("a relaxation of a mixture goes on while any kind still moves") {
+TEST_CASE("a relaxation of a mixture continues while any kind still moves") {
   // One light sphere falls through a dilute box onto a floor of heavy ones at rest: its mean height
   // counts for one in a hundred thousand of the volume.
   Packing packing{PeriodicBox{20.5, 20.5}, {{1, 1, 60}}};
@@ -259,7 +259,7 @@ TEST_CASE("a relaxation of a mixture goes on while any kind still moves") {
   CHECK(sweeps_to_rest({1, 1, 1, 1, 1}) == 100);  // with one kind only the mean counts
 }
 
-TEST_CASE("a mixture that is tapped goes on bit for bit from what it saved") {
+TEST_CASE("a mixture that is tapped continues bit for bit from what it saved") {
   const Packing start = random_mixture(WalledBox{6, 6}, graded_diameters(60, 0.6, 5), 12, 17);
   const MonteCarlo settings{.relax = {.move = PolarMove{}, .stop = {MeanHeightStop{1e-4, 20}}}};
   const DynamicsStreams streams{stream_key(1, 0, 0, Purpose::trials),

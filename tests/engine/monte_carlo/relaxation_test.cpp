@@ -75,7 +75,7 @@ TEST_CASE("the absolute rule stops at the first small change in diameters") {
   CHECK(in_slices == progress);
 }
 
-TEST_CASE("the bulk-fraction rule wants its number of small changes in a row") {
+TEST_CASE("the bulk-fraction rule needs its number of small changes in a row") {
   const Packing start = bed();
   const HeightWindow window{1, 4};
   for (const bool measure_start : {true, false}) {
@@ -126,7 +126,7 @@ TEST_CASE("a fixed number of sweeps is exactly that, none included") {
   }
 }
 
-TEST_CASE("a rule that is never met ends at the cap and says so") {
+TEST_CASE("a rule that is never met ends at the cap and reports it") {
   for (const StopRule& rule : {StopRule{MeanHeightStop{1e-300, 1}}, StopRule{SweepsStop{1000}}}) {
     const auto loop = loaded(bed(), MetropolisMove{0.2, 1.0});
     RelaxationProgress progress;

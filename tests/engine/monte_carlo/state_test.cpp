@@ -48,8 +48,9 @@ TEST_CASE("Bytes of another version, of another length or of no state are refuse
   CHECK_THROWS_AS(monte_carlo_state(longer), StateError);
   auto other_version = whole;
   other_version[0] ^= std::byte{1};
-  CHECK_THROWS_WITH(monte_carlo_state(other_version),
-                    Catch::Contains("another version") && Catch::Contains("resume with the one"));
+  CHECK_THROWS_WITH(
+      monte_carlo_state(other_version),
+      Catch::Contains("another version") && Catch::Contains("resume with the version"));
   auto no_flag = whole;
   no_flag[4] = std::byte{2};
   CHECK_THROWS_AS(monte_carlo_state(no_flag), StateError);

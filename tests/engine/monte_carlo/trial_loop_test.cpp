@@ -112,7 +112,7 @@ TEST_CASE("every instruction set makes the same trajectory") {
   }
 }
 
-TEST_CASE("a loop restored from its state goes on bit for bit") {
+TEST_CASE("a loop restored from its state continues bit for bit") {
   MetropolisMove adaptive{0.3};
   adaptive.adaptation = StepAdaptation{0.9, 1000, 0.5, AcceptanceBase::not_upward, true};
   for (const Move& move : {Move{PolarMove{}}, Move{MetropolisMove{0.3, 2.0}}, Move{adaptive}}) {

@@ -15,7 +15,7 @@ Packing given(std::vector<Vec3> centres, const Container& container, std::uint32
 
 }  // namespace
 
-TEST_CASE("A given packing may overlap as deep as is said, with spheres and with the floor") {
+TEST_CASE("A given packing may overlap up to the given depth, with spheres and with the floor") {
   const PeriodicBox box{5, 5};
   RandomStream random(StreamKey{});
   const auto overlapping = [&](double most) {

@@ -204,7 +204,7 @@ TEST_CASE("Small beds of any sizes, narrow and degenerate ones too, are poured w
   }
 }
 
-TEST_CASE("Beside a tube a sphere rests on one that stands on its axis, at any angle") {
+TEST_CASE("In a tube a sphere rests on another on the axis, at any angle") {
   for (const double room : {2.0, 1e-4}) {
     const StartSpheres spheres = with_diameters({3, 3 - room});
     PourBed bed(Cylinder{3}, spheres.sizes);

@@ -73,7 +73,7 @@ TEST_CASE("A bias that does not grow is called growing one time in twenty, with 
   }
 }
 
-TEST_CASE("What a geometric ladder lacks is the rest of the series") {
+TEST_CASE("The bias of a geometric ladder is the rest of the series") {
   // 1 - 2^-k at k = 1, 2, 3: to 1 are missing 1/8.
   const auto of = [](std::vector<double> two_before, std::vector<double> before,
                      std::vector<double> last) { return remainder(two_before, before, last); };
@@ -86,7 +86,7 @@ TEST_CASE("What a geometric ladder lacks is the rest of the series") {
   CHECK(of({0.5, 9, 1.5}, {0.75, missing, 1.75}, {0.875, 9, 1.875}).value == Approx(0.125));
 }
 
-TEST_CASE("The error of what a ladder lacks is its deviation between ensembles") {
+TEST_CASE("The error of a ladder's bias is its deviation between ensembles") {
   RandomStream random = test_stream(7);
   const auto scatter = [&] { return 0.02 * noise(random); };
   constexpr int n = 40, repetitions = 400;
@@ -195,7 +195,7 @@ std::vector<SettingCost> limits_of_a_pilot(const MadeLadder& made, std::size_t r
 
 }  // namespace
 
-TEST_CASE("What is recommended reaches its target in four of five cases") {
+TEST_CASE("Recommendations reach their target in four of five cases") {
   RandomStream random = test_stream(31);
   const std::vector<MadeLadder> ladders = {
       {},

@@ -234,7 +234,7 @@ TEST_CASE("A tail that is not exponential is refuted", "[statistics]") {
   CHECK(one.status.find("the law does not hold: F test over") == 0);
 }
 
-TEST_CASE("Counts that limit no law give none, and say why") {
+TEST_CASE("Counts that limit no law give none, with a reason") {
   const Sample sample = pore_sample(0.09, exponential);
   Histogram flat{.bins = sample.bins, .counts = {}, .realizations = 1};
   for (const Bin& bin : flat.bins) flat.counts.push_back(1000 * (bin.high - bin.low));

@@ -155,7 +155,7 @@ TEST_CASE("Step values are means of the windows, and absent beyond the series") 
   CHECK(std::isnan(step_values(steps, shorter, 2)[2]));
 }
 
-TEST_CASE("A table of hysteresis tells values, branches and loops", "[statistics]") {
+TEST_CASE("A table of hysteresis holds values, branches and loops", "[statistics]") {
   // Up, down, up: the way up begins 0.1 lower, and the rest is reversible.
   const std::vector<double> roots = {0.1, 0.2, 0.3, 0.2, 0.1, 0.2, 0.3};
   const auto steps = std::get<ProtocolSteps>(protocol_steps(dilations(roots, 10), 5));

@@ -197,8 +197,7 @@ TEST_CASE("Steady series of two time scales are seldom called unsteady, of any l
   for (const std::size_t n_taps : {300, 1000, 4000}) check_two_time_scales(n_taps, 400);
 }
 
-TEST_CASE("Drifts are found, and steady states reached, as often as the verdicts say",
-          "[slow]") {
+TEST_CASE("Drifts are found, and steady states reached, at the stated rate", "[slow]") {
   std::vector<Setting> settings;
   for (const std::size_t realizations : {1, 2, 3, 10}) {
     for (const double rho : {0.0, 0.9, 0.99}) settings.push_back({realizations, 300, rho});
@@ -207,7 +206,7 @@ TEST_CASE("Drifts are found, and steady states reached, as often as the verdicts
   check(settings, 200);
 }
 
-TEST_CASE("Drifts are found as often as verdicts say, for every ensemble and length", "[nightly]") {
+TEST_CASE("Drifts are found at the stated rate, for every ensemble and length", "[nightly]") {
   std::vector<Setting> settings;
   for (const std::size_t realizations : {1, 2, 3, 4, 10, 20}) {
     for (const std::size_t n_taps : {300, 1000, 4000}) {

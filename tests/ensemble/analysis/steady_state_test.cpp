@@ -55,7 +55,7 @@ TEST_CASE("A constant series is steady, in words without a number") {
   }
 }
 
-TEST_CASE("Blocking agrees with pyblock, and tells that its series has no plateau") {
+TEST_CASE("Blocking agrees with pyblock, and reports a series without a plateau") {
   const std::vector<double> series = numbers_of("stats/pyblock_data_1D.dat");
   REQUIRE(series.size() == 1024);
   std::ifstream file(test_data("stats/pyblock_reference.json"));

@@ -63,7 +63,7 @@ EnsembleStructure three_curves(const char* part, const char* places, const char*
 
 }  // namespace
 
-TEST_CASE("A mean says of how many packings it is, where some may have no value") {
+TEST_CASE("A mean counts its packings if some may have no value") {
   EnsembleStructure structure{.taps = {0, 10}, .packings = {}};
   const auto with = [](double value) {
     Measurement one{.part = "gaps"};
@@ -149,7 +149,8 @@ TEST_CASE("Averages over packings of unequal height, with the errors of realizat
   CHECK(quantity(table, "lateral_change").long_name == "one value, change since tap 0");
 }
 
-TEST_CASE("A part that all packings refuse says why, and others speak for those that do not") {
+TEST_CASE(
+    "A part that all packings refuse has a reason, and other parts use the packings that do not") {
   Measurement refused{.part = "layers", .refused = "no floor"};
   EnsembleStructure structure{.taps = {0}, .packings = {{{refused}, {refused}}}};
   Table table = structure_tables("", structure, {}).at(0);
@@ -256,7 +257,7 @@ TEST_CASE("The laws of the papers are found in curves and counts, with jackknife
   CHECK(numbers(table, "normal_width")[0] == Approx(1.5).epsilon(1e-3));
 }
 
-TEST_CASE("What is no curve of a law is not fitted, and says why") {
+TEST_CASE("A curve that no law can have is not fitted, with a reason") {
   const StructureSettings settings = all_structure();
   const auto status = [&](const EnsembleStructure& structure, const std::string& name) {
     const Table table = structure_tables("", structure, settings).at(0);

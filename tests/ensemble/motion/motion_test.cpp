@@ -186,7 +186,8 @@ TEST_CASE("Spheres that move straight on are followed through periodic sides") {
   CHECK(bed.state().largest_step == Approx(0.225));
 }
 
-TEST_CASE("A step of more than half a period is taken for a shorter one, and the longest is told") {
+TEST_CASE(
+    "A step of more than half a period is taken for a shorter one, and the longest is reported") {
   RandomStream random = test_stream(2);
   const MotionSettings settings{.origins = {0}, .lags = {1}, .overlap_lengths = {0.5}, .layers = 1};
   Moved far(settings, scattered(PeriodicBox{4, 4}, 5, {4, 4, 2}, random));
@@ -246,7 +247,7 @@ TEST_CASE("Random walks have the mean squares, overlaps and moments of theory") 
     }
 }
 
-TEST_CASE("What a run finds of its motion is what the positions of every tap give") {
+TEST_CASE("The motion that a run records follows from the positions of every tap") {
   for (auto& [name, plan] : various_plans()) {
     CAPTURE(name);
     plan.motion = settings_for(plan);
@@ -276,7 +277,7 @@ TEST_CASE("What a run finds of its motion is what the positions of every tap giv
   }
 }
 
-TEST_CASE("Following the motion changes nothing else, and goes on bit for bit") {
+TEST_CASE("Following the motion changes nothing else, and continues bit for bit") {
   RandomStream random(stream_key(8, 0, 0, Purpose::start));
   for (auto& [name, plan] : various_plans()) {
     CAPTURE(name);

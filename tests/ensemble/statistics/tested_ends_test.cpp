@@ -9,7 +9,7 @@
 
 namespace jostle {
 
-TEST_CASE("Ends of an interval stand where a straight t crosses Student's") {
+TEST_CASE("Ends of an interval are where a straight t crosses Student's") {
   std::vector<double> values;
   for (int i = -50; i <= 50; ++i) values.push_back(0.1 * i);
   const auto t_of = [](double value) { return (value - 0.33) / 0.5; };

@@ -104,7 +104,7 @@ TEST_CASE("A drift does not inflate the errors within series") {
         Approx(trend_of(steady).line.within.error).epsilon(1e-9));
 }
 
-TEST_CASE("Two realizations find what their scatter cannot, and say what they would miss") {
+TEST_CASE("Two realizations find drifts beyond their scatter, and report their power") {
   // 7 errors, as their memory has them: over two realizations t of one degree of freedom needs 51.
   std::vector<std::vector<double>> ensemble;
   for (std::uint64_t r = 0; r < 2; ++r)

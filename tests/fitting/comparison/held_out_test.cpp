@@ -261,7 +261,7 @@ TEST_CASE("Laws are not chosen without three realizations that differ") {
   CHECK_FALSE(logarithmic.is_decided());
 }
 
-TEST_CASE("Laws that draw one curve are not told apart") {
+TEST_CASE("Laws that draw one curve are not distinguished") {
   const InverseLog law;
   const Repeated repeated;
   for (const double deviation : {1e-6, 1e-3}) {

@@ -127,7 +127,8 @@ void check_one_realization(const std::string& model) {
 
 }  // namespace
 
-TEST_CASE("Few realizations with memory: intervals hold the truth as they say", "[statistics]") {
+TEST_CASE("Few realizations with memory: intervals hold the truth at their stated rate",
+          "[statistics]") {
   check_few_realizations("power_law");
 }
 

@@ -92,15 +92,15 @@ void check_coverages(int curves) {
 
 }  // namespace
 
-TEST_CASE("intervals hold the truth as often as they say, in 40 curves", "[statistics]") {
+TEST_CASE("intervals hold the truth at their stated rate, in 40 curves", "[statistics]") {
   check_coverages(40);
 }
 
-TEST_CASE("intervals hold the truth as often as they say, in 100 curves", "[slow]") {
+TEST_CASE("intervals hold the truth at their stated rate, in 100 curves", "[slow]") {
   check_coverages(100);
 }
 
-TEST_CASE("intervals hold the truth as often as they say, in 1000 curves", "[nightly]") {
+TEST_CASE("intervals hold the truth at their stated rate, in 1000 curves", "[nightly]") {
   for (const Study& study : studies()) check_coverage(study, 1000, false);
 }
 

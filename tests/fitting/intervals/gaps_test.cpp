@@ -117,7 +117,7 @@ void check(const Law& law, const Ensemble& ensemble, int ensembles, double least
 
 }  // namespace
 
-TEST_CASE("Realizations with gaps: intervals hold the truth as they say", "[statistics]") {
+TEST_CASE("Realizations with gaps: intervals hold the truth at their stated rate", "[statistics]") {
   check(kww, {4, 0, 1, Missing::random}, 15);
   check(kww, {4, 0.99, 1, Missing::drop_out}, 15);
   check(kww, {10, 0, 0, Missing::drop_out}, 15);

@@ -120,15 +120,15 @@ TEST_CASE(
   kill_at_calls(7);
 }
 
-TEST_CASE("killed at any call while it goes on from a folded file, nothing is lost", "[slow]") {
+TEST_CASE("killed at any call while it continues from a folded file, nothing is lost", "[slow]") {
   kill_while_going_on(1);
 }
 
-TEST_CASE("killed while it goes on from a folded file, nothing is lost") {
+TEST_CASE("killed while it continues from a folded file, nothing is lost") {
   kill_while_going_on(7);
 }
 
-TEST_CASE("a full disk is reported with its path, and the run goes on once there is room") {
+TEST_CASE("a full disk is reported with its path, and the run continues once there is room") {
   const auto [calls, digest] = undisturbed();
   for (long at = 1; at <= calls; at += 2) {
     CAPTURE(at, calls);

@@ -106,7 +106,7 @@ void run_whole(const std::string& path, bool force) {
 
 }  // namespace
 
-TEST_CASE("whatever lies at the name of the lock is refused, and left as it is") {
+TEST_CASE("any object at the name of the lock is refused, and left as it is") {
   const Planted what = GENERATE(from_range(std::begin(all_planted), std::end(all_planted)));
   const bool force = GENERATE(false, true);
   const Surroundings around;
@@ -129,7 +129,7 @@ TEST_CASE("a text that begins as a lock does is no lock, and left as it is") {
   CHECK(std::string(std::istreambuf_iterator<char>(left), {}) == text);
 }
 
-TEST_CASE("whatever lies at the name of the parts is refused, and left as it is") {
+TEST_CASE("any object at the name of the parts is refused, and left as it is") {
   const Planted what = GENERATE(from_range(std::begin(all_planted), std::end(all_planted)));
   if (what == Planted::folder) return;  // the file that belongs there
   const bool force = GENERATE(false, true);

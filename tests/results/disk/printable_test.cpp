@@ -24,7 +24,7 @@ std::string escaped(const std::string& bytes) {
 
 }  // namespace
 
-TEST_CASE("What a terminal does not show as it stands is escaped in texts and names") {
+TEST_CASE("Characters that a terminal would not show are escaped in texts and names") {
   for (const std::string one : hidden) {
     CHECK(printable("a" + one + "b") == "a" + escaped(one) + "b");
     CHECK(printable_name("a" + one + "b") == "a" + escaped(one) + "b");

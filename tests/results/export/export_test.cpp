@@ -94,7 +94,7 @@ TEST_CASE("columns are those of the C++ library") {
   CHECK_THAT(line[2], Catch::Matchers::StartsWith("X 1.5 1.5 1.5 0.5 0 2"));
 }
 
-TEST_CASE("spheres of a crystal are told by their columns") {
+TEST_CASE("columns identify the spheres of a crystal") {
   Packing fcc{
       FullyPeriodicBox{4 * std::numbers::sqrt2, 4 * std::numbers::sqrt2, 4 * std::numbers::sqrt2},
       {}};

@@ -251,7 +251,7 @@ TEST_CASE("a failed realization is NaN with its reason, and can be run again") {
     CHECK(file.state() == RunState::complete);
     const RealizationSummary failed = file.realizations().at(1);
     CHECK(failed.status == RealizationStatus::failed);
-    CHECK(failed.reason == "it was told to");
+    CHECK(failed.reason == "requested by the test");
     CHECK(std::isnan(file.series(0)[0].at(0, 1)));
     CHECK(file.ensemble(0)[0].count[0] == 2);
     CHECK(file.snapshots({0, 1}).empty());

@@ -111,7 +111,7 @@ TEST_CASE("The gradient of a pour is taken within it") {
   CHECK(std::abs(of_lower.alpha) < 0.004);
 }
 
-TEST_CASE("A packing too low has no gradient, and says why") {
+TEST_CASE("A packing too low has no gradient, with a reason") {
   const Packing layer{PeriodicBox{4, 4}, {{1, 1, 0.5}, {3, 3, 0.5}}};
   const Gradient none =
       gradient(vertical_profile(layer, height_edges(layer, 0.1)), gradient_range(layer.container));

@@ -250,7 +250,7 @@ TEST_CASE("Profiles of one sphere") {
   }
 }
 
-TEST_CASE("The mean of x and y is of a square footprint") {
+TEST_CASE("The mean of x and y needs a square footprint") {
   const Packing packing = poured(WalledBox{5, 5}, 150, 10);
   const auto edges = even_edges(0, 5, 0.4);
   const HeightWindow window{1, 4};

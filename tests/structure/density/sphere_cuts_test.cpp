@@ -202,7 +202,7 @@ TEST_CASE("A tube takes what the circles share") {
   }
 }
 
-TEST_CASE("What a bore along the axis leaves depends on its length alone") {
+TEST_CASE("The volume around a bore along the axis depends on its length alone") {
   const double half = 0.3, bore = std::sqrt(0.25 - half * half);
   CHECK(sphere_volume - sphere_volume_in_tube(0, bore, -1, 1) ==
         Approx(4.0 / 3 * std::numbers::pi * half * half * half).epsilon(1e-13));

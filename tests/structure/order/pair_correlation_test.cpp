@@ -202,7 +202,7 @@ TEST_CASE("Pooled pair correlations are those of all counts") {
   }
 }
 
-TEST_CASE("What g(r) cannot be measured in is refused") {
+TEST_CASE("Containers without a g(r) are refused") {
   const Packing walled = random_points(WalledBox{8, 8}, 10, 500);
   CHECK_THROWS_WITH(pair_correlation(walled, {.r_max = 2, .heights = HeightWindow{20, 30}}),
                     Catch::Contains("too few layers"));

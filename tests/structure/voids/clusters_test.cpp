@@ -150,7 +150,7 @@ TEST_CASE("Cells dealt out anew have the variance that is given for independent 
   CHECK(open[7] < 0.97);  // the share in 16 cells
 }
 
-TEST_CASE("Clusters are held against the cells that they are of") {
+TEST_CASE("Clusters are compared with their cells") {
   // Independent cells that vary more, the lower they are: clusters of many keep off the floor.
   const Packing bed = reference_deposit();
   VoronoiCells cells = voronoi_cells(bed);

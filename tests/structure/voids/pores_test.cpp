@@ -89,7 +89,7 @@ TEST_CASE("Pores of a deposit are those of voro++'s own output") {
   CHECK(found_heights == Approx(expected_heights).epsilon(1e-6));
 }
 
-TEST_CASE("A deposit has 6.39 pores a sphere, as many as its vertices say") {
+TEST_CASE("A deposit has 6.39 pores per sphere, as its vertices require") {
   const Packing deposit = reference_deposit();
   const VoronoiCells cells = voronoi_cells(deposit);
   const auto all = pores(deposit, cells);

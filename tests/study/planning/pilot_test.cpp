@@ -102,7 +102,7 @@ TEST_CASE("A ramp costs the sum over its taps") {
   CHECK(both < strong);
 }
 
-TEST_CASE("What is followed of the motion is counted in the memory") {
+TEST_CASE("The memory includes the followed motion") {
   Plan plan = plan_of(PeriodicBox{8, 8}, 500);
   const PilotEstimate without = pilot(plan, 1'000'000);
   plan.motion = MotionSettings{.origins = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9},

@@ -22,7 +22,7 @@ Plan grains(std::vector<Stage> protocol) {
 // By hand. Two spheres of mass m on latched springs: half a period of the spring K1 while they
 // approach, half a period of K1 / e^2 while they part, a reduced mass m / 2.
 // (pi/2) (1 + 0.9) sqrt(5.0265e-3 / (2 * 1e5)) = 4.73e-4 s.
-TEST_CASE("What grains come to is what one works out by hand") {
+TEST_CASE("The summary of grains agrees with a calculation by hand") {
   const auto lines = grain_summary(grains({{HalfSine{0.4413, 7.5}, 10}}));
   REQUIRE(lines.size() == 2);
   CHECK_THAT(lines[0], Contains("contact time 0.000473 s, time step "));
@@ -41,7 +41,7 @@ TEST_CASE("An acceleration is the amplitude that it asks for") {
   CHECK_THAT(lines.at(1), Contains("a = 0.4418 d, f = 7.5 Hz: Gamma 2.000"));
 }
 
-TEST_CASE("Equal taps are told of once, too many are counted, too fast ones warned of") {
+TEST_CASE("Equal taps are listed once, too many are counted, too fast ones warned of") {
   CHECK(grain_summary(grains({{HalfSine{0.1, 10}, 5}, {Dilate{0.1}, 5}, {HalfSine{0.1, 10}, 7}}))
             .size() == 2);
   CHECK(grain_summary(grains({{HalfSine{0.1, 10}, 0}})).size() == 1);

@@ -63,7 +63,7 @@ class Heard : public RunObserver, public TablesObserver {
 
 }  // namespace
 
-TEST_CASE("A run of a scene fills its file, and tells its observer how it goes") {
+TEST_CASE("A run of a scene fills its file, and informs its observer") {
   const TemporaryFolder folder;
   const LoadedScene loaded = load(folder, scene_text(wishes));
   Heard heard;
@@ -133,7 +133,7 @@ TEST_CASE("A file that is there is kept, resumed or replaced") {
   CHECK(digest_of(output) != digest);
 }
 
-TEST_CASE("Realizations are added until their spread is small, and a share cannot tell") {
+TEST_CASE("Realizations are added until their spread is small, and a share cannot decide") {
   const TemporaryFolder folder;
   const LoadedScene loaded = load(folder, scene_text(R"(, "until": {"at_most": 5,
       "targets": [{"observable": "mean_height", "standard_error": 1e-9}]})"));
@@ -156,7 +156,7 @@ TEST_CASE("Realizations are added until their spread is small, and a share canno
   }
 }
 
-TEST_CASE("A stop leaves a file that goes on to the same digest") {
+TEST_CASE("A stop leaves a file that continues to the same digest") {
   const TemporaryFolder folder;
   const LoadedScene loaded = load(folder, scene_text());
   RunObserver nobody;
@@ -168,7 +168,7 @@ TEST_CASE("A stop leaves a file that goes on to the same digest") {
   CHECK(digest_of(folder / "out.h5") == digest_of(folder / "whole.h5"));
 }
 
-TEST_CASE("A stop that would fold much leaves it in the parts, and goes on to the same digest") {
+TEST_CASE("A stop that would fold much leaves it in the parts, and continues to the same digest") {
   const TemporaryFolder folder;
   std::string text = scene_text();
   text.replace(text.find("\"count\": 12"), 11, "\"count\": 400");

@@ -12,7 +12,7 @@
 // Runs that were stopped: realizations that have not come as far as others.
 using namespace jostle;
 
-TEST_CASE("Of a run that was stopped every realization gives the taps that it has") {
+TEST_CASE("In a stopped run every realization gives the taps that it has") {
   const TemporaryFolder folder;
   const std::string path = folder / "stopped.h5";
   const Study study = synthetic::study({.points = 3, .realizations = 3});

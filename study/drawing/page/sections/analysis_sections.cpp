@@ -161,7 +161,7 @@ Json steady_section(const PageContent& content) {
   const Json curves = points_block(content.file, numbers_of(made), [&](std::uint32_t point) {
     return Blocks{figures_block(content, {.section = "steady", .point = point})};
   });
-  return page_section("steady", "Steady state", "Whether the last taps drift, and their mean.",
+  return page_section("steady", "Steady state", "A test of drift of the last taps, and their mean.",
                       {steady_table(content.file, made), details_block("Blocking curves", {curves}),
                        refusals_block(content.file, all)});
 }
@@ -198,7 +198,7 @@ Json hysteresis_section(const PageContent& content) {
   std::vector<TableView> made = not_refused(all);
   std::erase_if(made, [](const TableView& table) { return table.axis("step").empty(); });
   return page_section(
-      "hysteresis", "Hysteresis", "The same strength, reached from below and from above.",
+      "hysteresis", "Hysteresis", "A strength reached from below and from above.",
       {points_block(content.file, numbers_of(made),
                     [&](std::uint32_t point) {
                       Blocks blocks;

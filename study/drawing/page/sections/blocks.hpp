@@ -52,7 +52,7 @@ Json figures_block(const PageContent& content, const WantedFigures& wanted);
 /// their subscripts.
 using PageRow = std::vector<Json>;
 Json table_block(const std::string& caption, const PageRow& head, const std::vector<PageRow>& rows);
-/// A table with values "a(b)"; the caption says what b is.
+/// A table with values "a(b)"; the caption defines b.
 Json estimates_block(const std::string& caption, const PageRow& head,
                      const std::vector<PageRow>& rows);
 /// A verdict begins with what it states; the page sets it off.

@@ -125,7 +125,7 @@ Blocks law_blocks(const TableView& law) {
   }
   blocks.add(parameter_table({law}, law_name(law)));
   if (const std::string other = law.note("restated_model"); !other.empty()) {
-    blocks.add(statement_block("The same curve", law.note("restated_law")));
+    blocks.add(statement_block("Another form of this curve", law.note("restated_law")));
     blocks.add(parameter_table({law, "restated_"}, law_name(other)));
   }
   blocks.add(statement_block("Combinations", law.note("combinations")));

@@ -141,7 +141,8 @@ Json memory_section(const PageContent& content) {
   }
   blocks.add(refusals_block(content.file, all));
   return page_section("memory", "Memory",
-                      "Whether the further evolution depends on how a value was reached.", blocks);
+                      "A test of whether the further evolution depends on how a value was reached.",
+                      blocks);
 }
 
 }  // namespace jostle::inline study

@@ -32,7 +32,7 @@ std::string unbroken(const DrawnFile& file, std::uint32_t point) {
   return label;
 }
 
-/// Answers of sweep points; those with the same answer stand together.
+/// Answers of sweep points, grouped by answer.
 class Answers {
  public:
   explicit Answers(const DrawnFile& file) : file_(file) {}

@@ -163,7 +163,7 @@ TEST_CASE("a sector weighs what its bins do") {
   check_weights_of(box, centres, Kind<CubicDirections>{});
 }
 
-TEST_CASE("single precision tells only what double precision would") {
+TEST_CASE("single precision decides only what double precision would") {
   check_blocked(PeriodicBox{4, 5}, 100);
   check_blocked(WalledBox{40, 3}, 70);
   check_blocked(Cylinder{5}, 90);

@@ -192,7 +192,7 @@ TEST_CASE("bounds of sizes of diameter 1 are those of equal spheres, bit for bit
   }
 }
 
-TEST_CASE("single precision tells of mixtures only what double precision would") {
+TEST_CASE("single precision decides for mixtures only what double precision would") {
   const auto check = [](const auto& box, double ratio) {
     using Box = std::decay_t<decltype(box)>;
     const auto centres = mixed_bed(box, ratio, 3, 60);

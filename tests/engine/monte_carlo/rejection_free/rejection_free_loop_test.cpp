@@ -94,7 +94,7 @@ TEST_CASE("rejection-free sampling does not depend on how trials are split over 
   }
 }
 
-TEST_CASE("rejection-free sampling resumed from its state goes on bit for bit") {
+TEST_CASE("rejection-free sampling resumed from its state continues bit for bit") {
   for (const Move& move : moves()) {
     const Packing start = random_packing(Cylinder{5}, 70, 12, 7);
     const auto straight = rejection_free_loop(start, move);

@@ -156,7 +156,7 @@ Found rates_of_fluctuations(std::uint32_t m, const Paths& paths, int n, std::uin
                       fluctuations(m, with_a_inf(paths, 1, 20, 400), n, seed + 30'000)});
 }
 
-TEST_CASE("Intervals of eq. 6 hold the truth as often as they say", "[statistics]") {
+TEST_CASE("Intervals of eq. 6 hold the truth at their stated rate", "[statistics]") {
   fmt::print(coverage_heading);
   check_coverage(Laws::own, 3, {}, 40, 30'000);
   check_coverage(Laws::own, 10, {.common_part = 0.9}, 40, 40'000);
@@ -174,8 +174,7 @@ TEST_CASE("Intervals of eq. 6 hold the truth at every number of realizations", "
   }
 }
 
-TEST_CASE("Tests of ageing and collapse raise few false alarms, and find what there is",
-          "[slow]") {
+TEST_CASE("Tests of ageing and collapse raise few false alarms, and find what there is", "[slow]") {
   fmt::print(test_heading);
   const Paths compacting = {.common_part = 0.9};
   constexpr int n = 25;

@@ -242,7 +242,7 @@ TEST_CASE("Too few realizations for a fit are named, with what to do") {
         "for, there are 2: run more realizations");
 }
 
-TEST_CASE("Waiting times without a law say why there is none") {
+TEST_CASE("Waiting times without a law have a reason") {
   const AgeingGrid few{.waiting_times = grid.waiting_times, .lags = {grid.lags[0], grid.lags[1]}};
   const TapRows rows = eq_6_rows(4, 4);
   const std::string lags =

@@ -196,7 +196,7 @@ TEST_CASE("A logarithmic drift ages", "[statistics]") {
   }
 }
 
-TEST_CASE("Intervals of A hold the truth as often as they say", "[statistics]") {
+TEST_CASE("Intervals of A hold the truth at their stated rate", "[statistics]") {
   // A is a mean of squares, which are skewed: A +- t error, beside it, does not.
   constexpr int ensembles = 1000;
   const AgeingGrid one = {.waiting_times = {5}, .lags = {10}};
@@ -238,7 +238,7 @@ TEST_CASE("Intervals of A hold the truth as often as they say", "[statistics]") 
   fmt::print("{}", table);
 }
 
-TEST_CASE("Intervals of V hold the truth as often as they say", "[statistics]") {
+TEST_CASE("Intervals of V hold the truth at their stated rate", "[statistics]") {
   constexpr int ensembles = 1000;
   const AgeingGrid one = {.waiting_times = {5}, .lags = {10}};
   std::string table = "\nprocess               M   68 %   95 %   (share that holds the truth)\n";

@@ -185,7 +185,7 @@ TEST_CASE("mu has a value where it is limited on both sides, within the range of
   CHECK(closed > 0);
 }
 
-TEST_CASE("Curves with no more points than F has parameters say nothing of mu") {
+TEST_CASE("Curves with no more points than F has parameters do not constrain mu") {
   // Two ages of four lags each, far apart: whatever mu, F can be anything.
   LogCurves few = curves_of(4, 20, power(0.6));
   std::vector<Eigen::Index> rows;
@@ -205,7 +205,7 @@ TEST_CASE("Curves with no more points than F has parameters say nothing of mu") 
   const AgeingExponent found = ageing_exponent(kept, {1, 1'000'000'000}, "a");
   CAPTURE(found.verdict, found.mu, found.low_95, found.high_95);
   CHECK_FALSE((std::isfinite(found.low_95) && std::isfinite(found.high_95)));
-  CHECK(found.verdict == "no mu: cannot decide: the curves say nothing of mu");
+  CHECK(found.verdict == "no mu: cannot decide: the curves do not constrain mu");
 }
 
 }  // namespace jostle

@@ -120,17 +120,17 @@ TEST_CASE("Differences and their errors are those of a straight line, sum by sum
   }
 }
 
-TEST_CASE("Histories that are off by the same in every realization cannot be compared") {
+TEST_CASE("Histories that differ by the same amount in every realization cannot be compared") {
   std::vector<History> all = {{0.1, 10, {0.5, 0.5, 0.5}, {1, 1, 1}},
                               {0.2, 20, {0.6, 0.6, 0.6}, {1, 1, 1}}};
   const std::string still = memory_test(all, lag_windows(1)).statement("phi", "dilate");
   CHECK(still ==
-        "cannot decide: phi at the switch is off by the same in every realization between dilate "
-        "0.1 and 0.2, so that nothing says what is left at equal value");
+        "cannot decide: phi at the switch differs by the same amount in every realization between "
+        "dilate 0.1 and 0.2, so that the difference at equal value has no error");
   // Beside a pair that can be compared.
   all.push_back({0.3, 5, {0.61, 0.58, 0.62}, {1.1, 1.3, 1.25}});
   const std::string mixed = memory_test(all, lag_windows(1)).statement("phi", "dilate");
-  CHECK(mixed.starts_with("cannot decide: phi at the switch is off by the same"));
+  CHECK(mixed.starts_with("cannot decide: phi at the switch differs by the same amount"));
 }
 
 TEST_CASE("Tables name histories by their strengths") {
@@ -147,7 +147,7 @@ TEST_CASE("Tables name histories by their strengths") {
   CHECK(column("second_dilate") == std::vector{0.2});
 }
 
-TEST_CASE("An observable that never changes says nothing of memory") {
+TEST_CASE("An observable that never changes has no test of memory") {
   std::vector<History> histories;
   for (const double strength : {0.1, 0.2})
     histories.push_back({strength, 0, std::vector<double>(4, 0.5), std::vector<double>(8, 0.5)});
@@ -157,7 +157,7 @@ TEST_CASE("An observable that never changes says nothing of memory") {
         "cannot decide: x does not change after the switch of gamma");
 }
 
-TEST_CASE("Two realizations cannot tell of memory") {
+TEST_CASE("Two realizations cannot test memory") {
   std::vector<History> all = {{0.1, 10, {0.5, 0.6}, {1, 2}}, {0.2, 20, {0.5, 0.61}, {3, 5}}};
   CHECK(memory_test(all, lag_windows(1)).statement("phi", "dilate").starts_with("cannot decide"));
 }
@@ -213,6 +213,6 @@ TEST_CASE("Memory that is not there is seldom found, and what is detectable is f
   check_rates({4});
 }
 
-TEST_CASE("Memory is found as often as it says, 3 to 20 realizations", "[slow]") {
+TEST_CASE("Memory is found at the stated rate, 3 to 20 realizations", "[slow]") {
   check_rates({3, 10, 20});
 }

@@ -200,7 +200,7 @@ TEST_CASE("Quantiles of chi2 are those of its tail and of tables") {
       CHECK(chi_squared_tail(chi_squared_quantile(p, dof), dof) == Approx(1 - p));
 }
 
-TEST_CASE("Intervals of chi_4 hold the truth as often as they say", "[statistics]") {
+TEST_CASE("Intervals of chi_4 hold the truth at their stated rate", "[statistics]") {
   RandomStream random = test_stream(41);
   fmt::print("{:>3} {:>6} {:>5} | {:>7} {:>7} {:>8} {:>9}\n", "M", "group", "stay", "68 %", "95 %",
              "given", "mean/true");
@@ -354,7 +354,7 @@ TEST_CASE("A realization of which nothing is there yet counts for nothing") {
   }
 }
 
-TEST_CASE("No error stands where there is none, and a doubtful unwrapping is told") {
+TEST_CASE("A missing error stays empty, and a doubtful unwrapping is reported") {
   RandomStream random = test_stream(44);
   const LogEstimate still = four_point_susceptibility(std::vector<double>(8, 1.0), n_spheres);
   CHECK(still.value == 0);

@@ -143,7 +143,7 @@ void check_verdicts(const std::vector<std::size_t>& all_realizations, int ensemb
 
 }  // namespace
 
-TEST_CASE("Intervals of times to order hold the truth as often as they say", "[statistics]") {
+TEST_CASE("Intervals of times to order hold the truth at their stated rate", "[statistics]") {
   constexpr int ensembles = 200;
   fmt::print(
       "  M shape | median 68 %   95 %  S(60) 95 % | fitted  shape 68 %   95 %  not memoryless "
@@ -173,12 +173,11 @@ TEST_CASE("Intervals of times to order hold the truth as often as they say", "[s
   }
 }
 
-TEST_CASE("The best point for order and the largest value are told apart as often as they say",
+TEST_CASE("The best point for order and the largest value differ at the stated rate",
           "[statistics]") {
   check_verdicts({4, 10}, 60);
 }
 
-TEST_CASE("The best point for order and the largest value are told apart, 3 to 20 realizations",
-          "[slow]") {
+TEST_CASE("The best point for order and the largest value differ, 3 to 20 realizations", "[slow]") {
   check_verdicts({3, 4, 10, 20}, 300);
 }

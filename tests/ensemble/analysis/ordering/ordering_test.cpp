@@ -221,7 +221,7 @@ TEST_CASE("Growth rates are slopes on t and on its logarithm") {
   CHECK(b.value == Approx(1).epsilon(1e-10));
 }
 
-TEST_CASE("A comparison tells the point that orders first from the one that ends highest") {
+TEST_CASE("A comparison names the point that orders first and the one that ends highest") {
   const auto point = [](const char* label, std::uint64_t tap, double value) {
     OrderingPoint out{label, ensemble_of({}, 400), {}, Verdict::reached};
     for (std::uint64_t r = 0; r < 6; ++r) {
@@ -251,7 +251,7 @@ TEST_CASE("A comparison tells the point that orders first from the one that ends
         "the point that orders first is not the one with the largest value over the last taps (p < "
         "0.05)");
 
-  SECTION("whether last taps are steady is said") {
+  SECTION("the steadiness of the last taps is reported") {
     points[0].steady = Verdict::cannot_decide;
     points[2].steady = Verdict::cannot_decide;
     CHECK_THAT(note(compare(), "verdict"),

@@ -77,7 +77,7 @@ TEST_CASE("A slope that memory alone gives is called other at the level of the t
   check({1, 3}, 100);
 }
 
-TEST_CASE("Slopes of AR(1) ensembles are told from others as verdicts say", "[nightly]") {
+TEST_CASE("Slopes of AR(1) ensembles differ from others at the stated rate", "[nightly]") {
   check({1, 2, 3, 4, 10, 20}, 400);
   // Short series, whose slopes are biased, in ensembles that would see it.
   check({3, 10, 20, 50}, 200, 1000);

@@ -167,7 +167,7 @@ TEST_CASE("Realizations that scatter the more the farther on are not pooled in s
   CHECK(found >= 50);
 }
 
-TEST_CASE("Unequal scatter is found as often as its level says where scatters are alike",
+TEST_CASE("Unequal scatter is found at the level of the test where scatters are equal",
           "[statistics]") {
   constexpr std::size_t ensembles = 600;
   for (const Streams streams : {Streams::independent, Streams::matched}) {
@@ -186,8 +186,7 @@ TEST_CASE("Unequal scatter is found as often as its level says where scatters ar
   }
 }
 
-TEST_CASE("A maximum is found where there is one, and lines hold the truth, as often as they say",
-          "[statistics]") {
+TEST_CASE("Maxima are found and lines hold the truth at their stated rate", "[statistics]") {
   check({5, 7}, {2, 3, 10}, 200);
 }
 

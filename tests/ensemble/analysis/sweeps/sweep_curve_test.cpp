@@ -105,7 +105,7 @@ TEST_CASE("No point counts more because its realizations agree by accident") {
   CHECK(first.dof == 6);
 }
 
-TEST_CASE("A maximum whose place may be the sweep's end says so") {
+TEST_CASE("A maximum whose place may be the sweep's end is marked") {
   const auto verdict = [](double last) {
     std::vector<std::vector<double>> values;
     for (const double y : {0.0, 0.04, last}) {
@@ -123,7 +123,7 @@ TEST_CASE("A maximum whose place may be the sweep's end says so") {
   CHECK(far.verdict.ends_with("two lines)"));
 }
 
-TEST_CASE("What is no maximum is not called one") {
+TEST_CASE("A curve without a maximum has none") {
   const std::vector<double> x = {1, 2, 3, 4, 5};
   const std::vector<ErrorOf> error = known(std::vector<double>(5, 0.1));
   const SweepExtremum rising = maximum(SweepCurve(x, {1, 2, 3, 4, 5}, error));

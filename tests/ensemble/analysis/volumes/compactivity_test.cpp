@@ -203,7 +203,7 @@ TEST_CASE("ln P_2/P_1 of histograms that are tilts of one another is the tilt, w
   CHECK(shared(first, first) == Approx(1).epsilon(1e-12));
 }
 
-TEST_CASE("ln P_2/P_1 of normal laws of two widths bends by what their variances say") {
+TEST_CASE("ln P_2/P_1 of normal laws of two widths bends by their variances") {
   const VolumeBins bins{.first = -12, .width = 0.05, .count = 480};
   std::vector<double> first(480), second(480);
   for (std::size_t k = 0; k < 480; ++k) {
@@ -216,7 +216,7 @@ TEST_CASE("ln P_2/P_1 of normal laws of two widths bends by what their variances
         Approx(2 * (1 - 1 / 1.44)).epsilon(1e-6));
 }
 
-TEST_CASE("States that do not vary or do not overlap are told") {
+TEST_CASE("States that do not vary or do not overlap are reported") {
   std::vector<SteadyVolumes> still(2);
   for (SteadyVolumes& state : still) state.add(std::vector{1.0, 1.0});
   CHECK_THROWS_AS(volume_bins(still), std::invalid_argument);
@@ -243,7 +243,7 @@ TEST_CASE("States that do not vary or do not overlap are told") {
   CHECK(compactivity_verdict(steps, drift_together(apart)).statement.starts_with("cannot decide"));
 }
 
-TEST_CASE("Neighbours that lie close are told to agree whatever they are: no verdict") {
+TEST_CASE("Close neighbours would agree whatever they are: no verdict") {
   const Setting setting{10, 1000, 0};
   std::vector<SteadyVolumes> states(2);
   VolumeBins bins;
@@ -295,7 +295,7 @@ TEST_CASE("A drift that no state alone shows is seen in all together, and decide
   CHECK_FALSE(drift_together(one).error.known());
 }
 
-TEST_CASE("Both estimators are what their definitions say, value by value") {
+TEST_CASE("Both estimators follow their definitions, value by value") {
   const Setting setting{4, 400, 0.5};
   std::vector<std::vector<double>> all[2];
   std::vector<SteadyVolumes> states(2);

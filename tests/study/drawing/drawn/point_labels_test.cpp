@@ -46,7 +46,7 @@ TEST_CASE("Points are called by their swept values, in few letters") {
                "width = 16, ε = 0.2"});
 }
 
-TEST_CASE("What varies with another value has no part of a label") {
+TEST_CASE("A value that varies with another has no part of a label") {
   CHECK(shown_labels(swept({{{"/protocol/0/tap/dilate", "0.1"}, {"/protocol/0/count", "100"}},
                             {{"/protocol/0/tap/dilate", "0.2"}, {"/protocol/0/count", "300"}}})) ==
         Labels{"ε = 0.1", "ε = 0.2"});

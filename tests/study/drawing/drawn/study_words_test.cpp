@@ -4,7 +4,7 @@
 
 namespace jostle {
 
-TEST_CASE("A caption's words say bed and realizations, of every container") {
+TEST_CASE("A caption names bed and realizations, for every container") {
   Study study{.scene = "", .resolved_scene = "", .realizations = 8, .points = {}};
   CHECK(study_words(study).empty());
   StudyPoint point;

@@ -28,7 +28,7 @@ Json vectors() {
 
 }  // namespace
 
-TEST_CASE("numbers are shown as the shared vectors say") {
+TEST_CASE("numbers are shown as in the shared vectors") {
   const Json all = vectors();
   REQUIRE(all.at("numbers").size() > 20);
   for (const Json& one : all.at("numbers").elements()) {

@@ -11,7 +11,7 @@ TEST_CASE("Quantities have the symbols of print, others are words") {
   CHECK(printed_name("s_0_of_squares") == "S(0) by a line in k²");
 }
 
-TEST_CASE("Names of letters become letters where they stand alone") {
+TEST_CASE("Names of letters become letters if they are words of their own") {
   CHECK(in_print("Solids fraction Phi_b between the floor and 2 d") ==
         "Packing fraction Φ_b between the floor and 2 d");
   CHECK(in_print("height <Z> of xi^3, tau > 2") == "height ⟨Z⟩ of ξ³, τ > 2");

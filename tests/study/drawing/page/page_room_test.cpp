@@ -198,7 +198,7 @@ TEST_CASE("curves of hundreds of sweep points are thinned, and their page keeps 
   CHECK(page_bytes(file) < most_bytes);
 }
 
-TEST_CASE("a very long series is thinned and says so") {
+TEST_CASE("a very long series is thinned, with a note") {
   const TemporaryFolder folder;
   const ResultsFile file = file_of({.taps = 300'000}, folder / "long.h5", 123'457);
   const Json data = data_of(file);

@@ -163,7 +163,7 @@ TEST_CASE("An own law gives the parameters, intervals and words of the law that 
   }
 }
 
-TEST_CASE("A formula is read as docs/reference/laws.md says") {
+TEST_CASE("A formula is read as docs/reference/laws.md defines") {
   const double p[] = {2.0, 3.0};
   const std::pair<const char*, double> values[] = {
       {"-t^2 + 0*(a + b)", -25},  {"a^b^2 + 0*t", 512}, {"ln(exp(b)) + log(1) + 0*(a + t)", 3},
@@ -247,7 +247,7 @@ TEST_CASE("Threads evaluate one own law each for themselves") {
   CHECK(wrong == std::vector<int>(4, 0));
 }
 
-TEST_CASE("What is wrong with an own law is said, all of it") {
+TEST_CASE("All faults of an own law are reported") {
   struct Bad {
     OwnLaw law;
     std::string says;
@@ -264,7 +264,8 @@ TEST_CASE("What is wrong with an own law is said, all of it") {
       {{.formula = "a*t", .start = {{"a", 1}, {"a", 2}}}, "a has two starts"},
       {{.formula = "a*t", .start = {{"a", 1}, {"t", 2}}}, "no parameter can be called t"},
       {{.formula = "a*t*pi", .start = {{"a", 1}, {"pi", 2}}}, "no parameter can be called pi"},
-      {{.formula = "a*t*exp", .start = {{"a", 1}}}, "exp stands without its parentheses"},
+      {{.formula = "a*t*exp", .start = {{"a", 1}}},
+       "exp needs parentheses with its argument: exp(...)"},
       {{.formula = "exp*t", .start = {{"exp", 1}}}, "no parameter can be called exp"},
       {{.formula = "tau (1 + t)", .start = {{"tau", 1}}}, "a product needs a *"},
       {{.formula = "a*t", .start = {{"a", 1}, {"b", 2}}}, "b has a start, but is not in the law"},
@@ -287,7 +288,7 @@ TEST_CASE("What is wrong with an own law is said, all of it") {
   CHECK(fault({.formula = "a*t^2 + 1e-3*exp(-t/2.5E2)", .start = {{"a", 1}}}).empty());
 }
 
-TEST_CASE("A law whose parameter is lost in noise is not told that parameters are exchanged") {
+TEST_CASE("A law whose parameter is lost in noise has no remark of exchanged parameters") {
   const auto law = make_own_law({.formula = "X0 + a*t", .start = {{"X0", 1}, {"a", 1}}});
   Curve curve{.t = {}, .x = {}, .sigma = {}};
   for (int t = 1; t <= 12; ++t) {
@@ -299,7 +300,7 @@ TEST_CASE("A law whose parameter is lost in noise is not told that parameters ar
   bool says_noise = false;
   for (const std::string& remark : fitted.remarks) {
     CHECK(remark.find("not unique") == std::string::npos);
-    says_noise |= remark.find("The data say little of X0") == 0;
+    says_noise |= remark.find("The data hardly constrain X0") == 0;
   }
   CHECK(says_noise);
 }

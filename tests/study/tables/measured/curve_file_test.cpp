@@ -133,7 +133,7 @@ TEST_CASE("faults name line, column and name") {
   CHECK(contains(fault_of("1,2,3,4\n"), "line 1 has 4 columns and no heading"));
 }
 
-TEST_CASE("a row without X is left out, and said") {
+TEST_CASE("a row without X is left out, and reported") {
   for (const char* gap : {"", "NaN", "nan", "NA", "null"}) {
     const MeasuredCurve measured =
         curve_of("t,X\n1,0.5\n2,0.6\n2.5," + std::string(gap) + "\n3,0.7\n,\n");

@@ -80,7 +80,7 @@ void check(std::size_t realizations, double slope, int sweeps) {
 }  // namespace
 
 TEST_CASE(
-    "Lines through a fit's parameter hold the truth, and are called bent as often as they say",
+    "Lines through a fit's parameter hold the truth, and are called bent, at their stated rate",
     "[slow]") {
   check(4, 0.003, 40);
 }
