@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/bed/boundary.hpp"
-#include "engine/bed/cell_grid.hpp"
+#include "engine/bed/cells/cell_grid.hpp"
 #include "engine/bed/geometry.hpp"
 #include "engine/bed/random.hpp"
 #include "engine/monte_carlo/relaxation.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/bed/boundary.hpp"
-#include "engine/bed/sized_grid.hpp"
+#include "engine/bed/cells/sized_grid.hpp"
 
 namespace jostle::inline engine {
 

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/numbers.hpp"
 #include "structure/snapshot_statistics.hpp"
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cli/commands/commands.hpp"
-#include "cli/reports/durations.hpp"
 #include "cli/reports/effects.hpp"
+#include "cli/tables/durations.hpp"
 #include "cli/tables/text_table.hpp"
 #include "cli/tables/wrapped.hpp"
 #include "cli/terminal/screen.hpp"

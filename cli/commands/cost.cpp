@@ -9,7 +9,7 @@
 #include "cli/files/output_file.hpp"
 #include "cli/files/waiting.hpp"
 #include "cli/reports/cost_report.hpp"
-#include "cli/reports/durations.hpp"
+#include "cli/tables/durations.hpp"
 #include "cli/tables/table_output.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/run_display.hpp"

@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "cli/commands/commands.hpp"
+#include "cli/files/figure_files.hpp"
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/live_input.hpp"
 #include "cli/files/output_file.hpp"
-#include "cli/reports/figure_files.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/file/results_file.hpp"
 #include "study/amounts.hpp"

@@ -5,7 +5,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/disk/error.hpp"
-#include "results/disk/scratch_folder.hpp"
+#include "results/disk/temporary_file.hpp"
 #include "study/bad_input.hpp"
 #include "study/running/self_checks.hpp"
 

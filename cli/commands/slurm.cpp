@@ -12,7 +12,7 @@
 #include "cli/files/output_file.hpp"
 #include "cli/options/command_words.hpp"
 #include "cli/reports/batch_script.hpp"
-#include "cli/reports/durations.hpp"
+#include "cli/tables/durations.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "ensemble/statistics/finite_text.hpp"

@@ -10,11 +10,11 @@
 #include "cli/files/output_file.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "results/disk/descriptor.hpp"
 #include "results/disk/error.hpp"
 #include "results/disk/output_path.hpp"
 #include "results/disk/printable.hpp"
 #include "results/disk/publish.hpp"
+#include "results/disk/system_calls.hpp"
 #include "results/disk/temporary_file.hpp"
 #include "results/file/tables.hpp"
 

@@ -17,7 +17,7 @@
 
 #include "results/disk/error.hpp"
 #include "results/disk/output_path.hpp"
-#include "results/disk/scratch_folder.hpp"
+#include "results/disk/temporary_file.hpp"
 #include "study/provenance.hpp"
 
 extern char** environ;  // glibc alone declares it

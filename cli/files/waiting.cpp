@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/reports/durations.hpp"
+#include "cli/tables/durations.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/disk/printable.hpp"
 #include "results/file/results_file.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <map>
 
-#include "cli/reports/durations.hpp"
+#include "cli/tables/durations.hpp"
 #include "cli/tables/text_table.hpp"
 #include "cli/tables/wrapped.hpp"
 #include "ensemble/statistics/counted.hpp"

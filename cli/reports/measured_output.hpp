@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "cli/files/figure_files.hpp"
 #include "cli/options/command.hpp"
-#include "cli/reports/figure_files.hpp"
 #include "study/tables/fits.hpp"
 
 namespace jostle::inline cli {

@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
-#include "cli/reports/durations.hpp"
 #include "cli/reports/tap_table.hpp"
+#include "cli/tables/durations.hpp"
 #include "cli/tables/wrapped.hpp"
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/counted.hpp"

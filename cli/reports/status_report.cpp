@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "cli/options/command_words.hpp"
-#include "cli/reports/durations.hpp"
-#include "cli/reports/redo_command.hpp"
+#include "cli/reports/next_commands.hpp"
+#include "cli/tables/durations.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 #include "results/disk/error.hpp"

@@ -4,7 +4,7 @@
 
 #include <new>
 
-#include "cli/reports/durations.hpp"
+#include "cli/tables/durations.hpp"
 #include "cli/tables/text_table.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "study/amounts.hpp"

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <string>
 
-#include "cli/reports/durations.hpp"
+#include "cli/tables/durations.hpp"
 #include "cli/terminal/clock_thread.hpp"
 
 namespace jostle::inline cli {

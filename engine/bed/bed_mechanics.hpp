@@ -1,10 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
-#include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
 
 // Velocities, forces and contacts in a bed, in addition to positions.
@@ -38,9 +36,5 @@ struct BedMechanics {
   std::vector<Contact> contacts;  // with force, by (first, second)
   DrivenBed driven;  // state of a tap whose motion was watched (Dynamics::watch_motion)
 };
-
-/// The names of the faces that a sphere can lean on, by number. A fully periodic container has
-/// none.
-std::vector<std::string> wall_names(const Container& container);
 
 }  // namespace jostle::inline engine

@@ -91,4 +91,10 @@ double boundary_depth(const Boundary& boundary, Vec3 r) {
   return depth;
 }
 
+std::vector<std::string> wall_names(const Container& container) {
+  std::vector<std::string> names;
+  for (const Face& face : Faces(Boundary(container))) names.emplace_back(face.name);
+  return names;
+}
+
 }  // namespace jostle::inline engine

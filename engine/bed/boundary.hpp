@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "engine/bed/container.hpp"
 #include "engine/bed/geometry.hpp"
@@ -92,5 +94,9 @@ Vec3 into_periods(const Boundary& boundary, Vec3 r);
 /// How deep a sphere centred at r reaches into the floor or a side; negative or 0 where it is clear
 /// of them.
 double boundary_depth(const Boundary& boundary, Vec3 r);
+
+/// The names of the faces that a sphere can lean on, by number. A fully periodic container has
+/// none.
+std::vector<std::string> wall_names(const Container& container);
 
 }  // namespace jostle::inline engine

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "engine/bed/boundary.hpp"
-#include "engine/bed/sized_grid.hpp"
+#include "engine/bed/cells/sized_grid.hpp"
 
 namespace jostle::inline engine {
 

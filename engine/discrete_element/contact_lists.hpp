@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "engine/bed/boundary.hpp"
+#include "engine/bed/cells/sphere_cells.hpp"
 #include "engine/bed/sizes.hpp"
-#include "engine/bed/sphere_cells.hpp"
 #include "engine/discrete_element/kernel/grain_rows.hpp"
 
 namespace jostle::inline engine {

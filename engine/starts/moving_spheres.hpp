@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "engine/bed/cells/sized_grid.hpp"
 #include "engine/bed/geometry.hpp"
 #include "engine/bed/packing.hpp"
-#include "engine/bed/sized_grid.hpp"
 
 namespace jostle::inline engine {
 

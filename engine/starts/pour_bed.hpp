@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "engine/bed/boundary.hpp"
+#include "engine/bed/cells/sphere_cells.hpp"
 #include "engine/bed/sizes.hpp"
-#include "engine/bed/sphere_cells.hpp"
 
 // The obstacles of a poured sphere. Its centre is a point; it must stay outside the balls around
 // the other centres, whose radii are the sums of both radii, inside the sides and above the floor.

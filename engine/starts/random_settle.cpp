@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/bed/boundary.hpp"
-#include "engine/bed/sphere_cells.hpp"
+#include "engine/bed/cells/sphere_cells.hpp"
 #include "engine/starts/parts.hpp"
 
 namespace jostle::inline engine {

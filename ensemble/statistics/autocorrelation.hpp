@@ -6,6 +6,14 @@
 
 namespace jostle::inline ensemble {
 
+/// Least squares over the indices 0 .. n - 1, n >= 1: middle + slope (i - center).
+struct Line {
+  double center = 0;  // (n - 1) / 2
+  double middle = 0;  // the mean
+  double slope = 0;   // 0 for one value
+};
+Line fit_line(std::span<const double> series);
+
 /// tau = 1/2 + sum of the correlation over lags 1, 2, ...: the mean of n taps has the variance
 /// 2 tau sigma^2 / n. 1/2 for independent taps, (1 + rho) / (1 - rho) / 2 for AR(1).
 struct AutocorrelationTime {

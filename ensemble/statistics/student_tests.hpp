@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,5 +46,16 @@ double student_power(double effect, double level, double dof);
 /// The smallest effect, in true standard errors, that is found with probability `power` (above
 /// `level`, below 1): 2.8 for level 0.05, power 0.8 and many degrees of freedom, 16 for one.
 double smallest_effect_found(double level, double dof, double power = 0.8);
+
+/// Ends of an interval by tests of its values, [2 levels of interval_levels]: infinite where no
+/// value on that side is refuted.
+struct TestedEnds {
+  double low[2], high[2];
+};
+
+/// Going outwards from the best value: where |t| first exceeds Student's at each level. Between
+/// `values` (ascending) t is taken for linear, and 0 at the best. t_of: t of a value.
+TestedEnds tested_ends(const std::vector<double>& values, double best, double dof,
+                       const std::function<double(double value)>& t_of);
 
 }  // namespace jostle::inline ensemble

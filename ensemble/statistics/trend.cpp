@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ensemble/moments.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 #include "fitting/intervals/distributions.hpp"
 

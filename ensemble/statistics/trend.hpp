@@ -7,7 +7,6 @@
 
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/autocorrelation.hpp"
-#include "ensemble/statistics/line.hpp"
 #include "ensemble/statistics/student_tests.hpp"
 
 // Slow drift of series that should be steady. It fakes long correlations, and a spectrum's slope

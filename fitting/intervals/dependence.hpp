@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "fitting/curve.hpp"
 #include "fitting/intervals/memory.hpp"
 
 // Errors of a fit whose points are not independent: realizations have memories, and keep to values
@@ -60,5 +61,15 @@ struct MemoryErrors : DependentErrors {
 MemoryErrors memory_errors(const std::vector<double>& t, const Eigen::MatrixXd& jacobian,
                            const Eigen::VectorXd& residuals, bool sigma_given,
                            double evidence = 10);
+
+/// Degrees of freedom of clustered errors where realizations are missing at some t: those that stay
+/// carry more of a parameter than those that leave, and its variance is estimated from fewer than
+/// n_realizations - 1 (Satterthwaite 1946, doi:10.2307/3002019; Bell & McCaffrey 2002 for
+/// clusters). In a realization's variance of a parameter, the part of its offset is equal for all;
+/// the part of its noise grows with the weight that its values have and with their memory, taken
+/// from the correlation of neighbouring points. Returns the least over the variables, from 1 to
+/// n_realizations - 1. jacobian: [n_points, n_variables], weighted; the curve has `present`,
+/// `offsets` and sigma.
+double gapped_dof(const Eigen::MatrixXd& jacobian, const Curve& curve);
 
 }  // namespace jostle::inline fitting

@@ -5,9 +5,9 @@
 #include <limits>
 #include <numeric>
 
+#include "fitting/intervals/dependence.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/intervals/fit_statistics.hpp"
-#include "fitting/intervals/gapped_dof.hpp"
 #include "fitting/numbers.hpp"
 #include "fitting/solver/curve_residuals.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "results/disk/descriptor.hpp"
+#include "results/disk/system_calls.hpp"
 
 namespace jostle::inline results {
 

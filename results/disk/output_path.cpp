@@ -9,9 +9,9 @@
 #include <filesystem>
 #include <list>
 
-#include "results/disk/descriptor.hpp"
 #include "results/disk/error.hpp"
 #include "results/disk/publish.hpp"
+#include "results/disk/system_calls.hpp"
 
 namespace jostle::inline results {
 namespace {

@@ -14,9 +14,9 @@
 #include <string_view>
 
 #include "ensemble/statistics/finite_text.hpp"
-#include "results/disk/descriptor.hpp"
 #include "results/disk/error.hpp"
 #include "results/disk/names.hpp"
+#include "results/disk/system_calls.hpp"
 #include "results/disk/temporary_file.hpp"
 
 namespace jostle::inline results {

@@ -13,9 +13,9 @@
 #include <string_view>
 
 #include "results/disk/checksum.hpp"
-#include "results/disk/descriptor.hpp"
 #include "results/disk/error.hpp"
 #include "results/disk/publish.hpp"
+#include "results/disk/system_calls.hpp"
 
 namespace jostle::inline results {
 namespace {

@@ -2,8 +2,10 @@
 
 #include <sys/stat.h>
 
+#include <unistd.h>
 #include <array>
 #include <cstdint>
+#include <utility>
 
 // Calls that systems name differently, or that only Linux has.
 namespace jostle::inline results {
@@ -23,5 +25,26 @@ ChangeTime change_time(const struct stat& status);
 /// there is no /proc. 0 where there is no such process, or one that has ended and that nobody has
 /// reaped; without /proc only a child of this process is seen to have ended so.
 std::uint64_t start_time_of(long pid);
+
+/// An open file descriptor, closed when it goes; -1 is none.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
+  Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    return *this;
+  }
+  ~Descriptor() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+
+  explicit operator bool() const { return descriptor_ >= 0; }
+  int get() const { return descriptor_; }
+
+ private:
+  int descriptor_ = -1;
+};
 
 }  // namespace jostle::inline results

@@ -5,10 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <stdlib.h>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "results/disk/checksum.hpp"
@@ -131,6 +133,21 @@ void remove_stale_temporaries(const std::string& path) {
     if (::lstat(entry->path().c_str(), &status) == 0 && S_ISREG(status.st_mode))
       remove_file(entry->path());
   }
+}
+
+ScratchFolder::ScratchFolder(const std::string& purpose, const std::filesystem::path& within) {
+  std::string name = (within / fmt::format("jostle-{}-XXXXXX", purpose)).string();
+  output_path(name);  // refuses links of others on the way
+  if (::mkdtemp(name.data()) == nullptr) {
+    const std::string reason = std::generic_category().message(errno);
+    throw ResultsError(within.string(), fmt::format("cannot make a folder there ({})", reason));
+  }
+  path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace jostle::inline results

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
 
-#include "results/disk/descriptor.hpp"
+#include "results/disk/system_calls.hpp"
 
 namespace jostle::inline results {
 
@@ -44,5 +45,21 @@ void publish_all(std::span<const std::unique_ptr<TemporaryFile>> files);
 
 /// Removes what killed processes left on the way to `path`. For the owner of its lock.
 void remove_stale_temporaries(const std::string& path);
+
+/// A new empty folder, removed with all that is in it when this goes.
+class ScratchFolder {
+ public:
+  /// jostle-PURPOSE-xxxxxx in `within`, or among the temporary files. Throws ResultsError.
+  explicit ScratchFolder(const std::string& purpose, const std::filesystem::path& within =
+                                                         std::filesystem::temp_directory_path());
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder();
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
 
 }  // namespace jostle::inline results

@@ -22,4 +22,7 @@ void update_contents(hid_t file, std::span<const std::string> groups);
 /// Hdf5Error where there are no hashes, and for what no results file has.
 std::vector<std::string> changed_contents(hid_t file);
 
+/// The SHA-256 of digest_of(), of an open HDF5 file that may be none of results. Throws Hdf5Error.
+std::string data_digest(hid_t file);
+
 }  // namespace jostle::inline results

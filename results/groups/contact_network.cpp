@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "engine/bed/boundary.hpp"
 #include "results/content/record.hpp"
 #include "results/groups/axes.hpp"
 #include "results/hdf5/read.hpp"

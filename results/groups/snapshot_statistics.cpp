@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/bed/boundary.hpp"
 #include "engine/numbers.hpp"
 #include "results/content/stored_realization.hpp"
 #include "results/groups/axes.hpp"

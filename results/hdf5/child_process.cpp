@@ -14,7 +14,6 @@
 #include <new>
 #include <span>
 
-#include "results/disk/descriptor.hpp"
 #include "results/disk/error.hpp"
 #include "results/disk/publish.hpp"
 #include "results/disk/system_calls.hpp"

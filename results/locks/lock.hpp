@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "results/disk/descriptor.hpp"
+#include "results/disk/system_calls.hpp"
 #include "results/locks/lock_owner.hpp"
 #include "results/locks/patience.hpp"
 

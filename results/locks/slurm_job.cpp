@@ -18,7 +18,6 @@
 #include <string_view>
 #include <vector>
 
-#include "results/disk/descriptor.hpp"
 #include "results/disk/system_calls.hpp"
 
 extern char** environ;  // glibc alone declares it

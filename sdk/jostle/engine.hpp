@@ -4,6 +4,7 @@
 // jostle::engine suffices to link.
 
 #include "engine/bed/bed_mechanics.hpp"
+#include "engine/bed/boundary.hpp"
 #include "engine/bed/mixture.hpp"
 #include "engine/engines.hpp"
 #include "engine/monte_carlo/relaxation.hpp"

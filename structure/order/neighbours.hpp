@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/bed/cell_axis.hpp"
+#include "engine/bed/cells/cell_axis.hpp"
 #include "engine/bed/packing.hpp"
 
 // Pairs of near centres, in any container. Lengths in diameters.

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "engine/bed/boundary.hpp"
-#include "engine/bed/cell_grid.hpp"
+#include "engine/bed/cells/cell_grid.hpp"
 #include "engine/bed/slab.hpp"
 #include "engine/numbers.hpp"
 #include "structure/density/sphere_cuts.hpp"

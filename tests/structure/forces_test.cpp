@@ -4,6 +4,8 @@
 #include <cmath>
 #include <memory>
 
+#include "engine/bed/boundary.hpp"
+
 using namespace jostle;
 
 namespace {

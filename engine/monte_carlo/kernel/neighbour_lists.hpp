@@ -5,9 +5,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "engine/bed/cell_grid.hpp"
+#include "engine/bed/cells/cell_grid.hpp"
+#include "engine/bed/cells/sized_grid.hpp"
 #include "engine/bed/geometry.hpp"
-#include "engine/bed/sized_grid.hpp"
 #include "engine/monte_carlo/kernel/list_rows.hpp"
 #include "engine/monte_carlo/kernel/packed_centre.hpp"
 

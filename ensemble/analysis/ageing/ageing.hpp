@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "ensemble/analysis/ageing/tap_rows.hpp"
 #include "ensemble/statistics/log_estimate.hpp"
-#include "ensemble/tap_rows.hpp"
 
 // How an observable forgets: two-time functions of the lag t and the waiting time (age) t_W, both
 // in taps. Where they depend on t_W, the packing ages; in a steady state they depend on t alone.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/numbers.hpp"
-#include "ensemble/statistics/tested_ends.hpp"
+#include "ensemble/statistics/student_tests.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/solver/decompositions.hpp"
 

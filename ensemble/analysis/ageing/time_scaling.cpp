@@ -10,7 +10,7 @@
 
 #include "engine/numbers.hpp"
 #include "ensemble/statistics/finite_text.hpp"
-#include "ensemble/statistics/tested_ends.hpp"
+#include "ensemble/statistics/student_tests.hpp"
 #include "fitting/solver/decompositions.hpp"
 
 namespace jostle::inline ensemble {

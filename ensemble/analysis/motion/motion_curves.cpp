@@ -7,7 +7,7 @@
 #include "engine/numbers.hpp"
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/jackknife.hpp"
-#include "ensemble/statistics/variance_estimate.hpp"
+#include "ensemble/statistics/log_estimate.hpp"
 
 namespace jostle::inline ensemble {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
-#include "ensemble/statistics/line.hpp"
+#include "ensemble/statistics/autocorrelation.hpp"
 
 namespace jostle::inline ensemble {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "study/drawing/drawn/drawn_results.hpp"
+#include "study/drawing/drawn/printed_names.hpp"
 #include "study/drawing/figures/figure.hpp"
-#include "study/drawing/figures/printed_names.hpp"
 #include "study/drawing/figures/table_view.hpp"
 
 namespace jostle::inline study {

@@ -1,4 +1,4 @@
-#include "engine/bed/sized_grid.hpp"
+#include "engine/bed/cells/sized_grid.hpp"
 
 #include <catch2/catch.hpp>
 #include <set>

@@ -1,4 +1,4 @@
-#include "engine/bed/sphere_cells.hpp"
+#include "engine/bed/cells/sphere_cells.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

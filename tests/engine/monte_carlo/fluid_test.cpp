@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/bed/cell_grid.hpp"
+#include "engine/bed/cells/cell_grid.hpp"
 #include "engine/bed/geometry.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "engine/starts/starts.hpp"

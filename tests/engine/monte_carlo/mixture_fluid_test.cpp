@@ -4,8 +4,8 @@
 #include <random>
 #include <vector>
 
+#include "engine/bed/cells/sized_grid.hpp"
 #include "engine/bed/geometry.hpp"
-#include "engine/bed/sized_grid.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "engine/starts/starts.hpp"
 #include "tests/engine/monte_carlo/contact_value.hpp"

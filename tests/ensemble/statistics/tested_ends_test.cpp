@@ -1,4 +1,4 @@
-#include "ensemble/statistics/tested_ends.hpp"
+#include "ensemble/statistics/student_tests.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

@@ -10,7 +10,6 @@
 #include "results/disk/error.hpp"
 #include "results/disk/output_path.hpp"
 #include "results/disk/publish.hpp"
-#include "results/disk/scratch_folder.hpp"
 #include "results/disk/temporary_file.hpp"
 #include "results/file/tables.hpp"
 #include "results/locks/lock.hpp"

@@ -8,7 +8,6 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "results/disk/descriptor.hpp"
 #include "tests/results/temporary_folder.hpp"
 
 using namespace jostle;

@@ -2,7 +2,7 @@
 #include <functional>
 #include <random>
 
-#include "results/file/digest.hpp"
+#include "results/file/contents.hpp"
 #include "results/file/results_file.hpp"
 #include "results/file/results_writer.hpp"
 #include "results/hdf5/writable_file.hpp"

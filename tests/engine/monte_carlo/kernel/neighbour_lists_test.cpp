@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "engine/bed/cell_grid.hpp"
+#include "engine/bed/cells/cell_grid.hpp"
 #include "engine/monte_carlo/kernel/neighbour_lists.hpp"
 #include "tests/engine/sample_packings.hpp"
 

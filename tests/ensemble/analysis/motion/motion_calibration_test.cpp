@@ -8,7 +8,7 @@
 #include "ensemble/analysis/motion/motion_curves.hpp"
 #include "ensemble/analysis/motion/motion_tables.hpp"
 #include "ensemble/moments.hpp"
-#include "ensemble/statistics/variance_estimate.hpp"
+#include "ensemble/statistics/log_estimate.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "tests/ensemble/noise.hpp"

@@ -1,4 +1,4 @@
-#include "ensemble/tap_rows.hpp"
+#include "ensemble/analysis/ageing/tap_rows.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

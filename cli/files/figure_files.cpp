@@ -1,4 +1,4 @@
-#include "cli/reports/figure_files.hpp"
+#include "cli/files/figure_files.hpp"
 
 #include <fmt/format.h>
 

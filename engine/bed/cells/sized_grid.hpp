@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/bed/cell_grid.hpp"
+#include "engine/bed/cells/cell_grid.hpp"
 
 namespace jostle::inline engine {
 

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "bench/cost_grains.hpp"
+#include "bench/costs/cost_grains.hpp"
 #include "engine/engines.hpp"
 
 namespace jostle::bench {

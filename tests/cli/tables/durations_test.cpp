@@ -1,4 +1,4 @@
-#include "cli/reports/durations.hpp"
+#include "cli/tables/durations.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "bench/cost_state.hpp"
+#include "bench/costs/cost_state.hpp"
 #include "engine/monte_carlo/kernel/typed_trial_loop.hpp"
 
 int main(int argc, char** argv) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/bed/boundary.hpp"
-#include "engine/bed/cell_axis.hpp"
+#include "engine/bed/cells/cell_axis.hpp"
 #include "engine/bed/vec3.hpp"
 
 namespace jostle::inline engine {

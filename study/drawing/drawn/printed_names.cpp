@@ -1,4 +1,4 @@
-#include "study/drawing/figures/printed_names.hpp"
+#include "study/drawing/drawn/printed_names.hpp"
 
 #include <algorithm>
 #include <map>

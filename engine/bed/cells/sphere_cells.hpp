@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/bed/cell_axis.hpp"
+#include "engine/bed/cells/cell_axis.hpp"
 #include "engine/bed/container.hpp"
 #include "engine/bed/vec3.hpp"
 

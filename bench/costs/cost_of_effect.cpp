@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "bench/cost_state.hpp"
+#include "bench/costs/cost_state.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 #include "ensemble/realization.hpp"
 #include "structure/observables.hpp"

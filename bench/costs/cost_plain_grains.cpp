@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "bench/cost_grains.hpp"
+#include "bench/costs/cost_grains.hpp"
 #include "engine/discrete_element/contact_lists.hpp"
 #include "engine/discrete_element/reduced.hpp"
 

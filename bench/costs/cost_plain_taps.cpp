@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "bench/cost_state.hpp"
+#include "bench/costs/cost_state.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 
 int main(int argc, char** argv) {
