@@ -17,11 +17,11 @@ int main(int argc, char** argv) {
   const ReducedSettings units = reduced(bench::counted_grains(0));
   const GrainKernels kernels = avx2::grain_kernels(GrainLaw::walton_braun_smooth);
   const std::size_t n = bed.centres.size();
-  std::vector<Row> rows(n + 2);
+  std::vector<SphereRow> rows(n + 2);
   for (std::size_t i = 0; i < n; ++i)
-    rows[i] = {{bed.centres[i].x, bed.centres[i].y, bed.centres[i].z}};
-  rows[n].of[2] = -1e3;
-  rows[n + 1].of[2] = -2e3;
+    rows[i] = {bed.centres[i].x, bed.centres[i].y, bed.centres[i].z};
+  rows[n].z = -1e3;
+  rows[n + 1].z = -2e3;
   std::vector<double> spins(n + 2), dissipated(2 * n);
   std::vector<std::uint32_t> numbers(n);
   std::iota(numbers.begin(), numbers.end(), 0u);

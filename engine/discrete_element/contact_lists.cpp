@@ -30,7 +30,8 @@ ContactLists::ContactLists(const Container& container, int n_history,
       sizes_(std::move(sizes)),
       skin_unit_(sizes_ ? 2 * sizes_->smallest_radius() : 1) {}
 
-void ContactLists::find_far(std::span<const Row> rows, std::span<const std::uint32_t> numbers) {
+void ContactLists::find_far(std::span<const SphereRow> rows,
+                            std::span<const std::uint32_t> numbers) {
   if (n_spheres_ > 0) {  // else what is to be kept waits already
     waiting_pairs_ = kept_pairs();
     waiting_sides_ = kept_sides();
@@ -73,10 +74,10 @@ std::vector<ContactLists::SizeClass> ContactLists::size_classes(double top) cons
 }
 
 // Each pair, and each of its images, from the first of its two places, or from the larger sphere.
-void ContactLists::find_far_pairs(std::span<const Row> rows) {
+void ContactLists::find_far_pairs(std::span<const SphereRow> rows) {
   const Vec3 periods = boundary_.periods();
   double top = 1;
-  for (std::uint32_t i = 0; i < n_spheres_; ++i) top = std::max(top, rows[i].of[2]);
+  for (std::uint32_t i = 0; i < n_spheres_; ++i) top = std::max(top, rows[i].z);
   std::vector<SizeClass> classes = size_classes(top);
   std::vector<std::array<std::int32_t, 2>> home(n_spheres_);
   std::vector<Vec3> inside(n_spheres_);
@@ -146,7 +147,7 @@ void ContactLists::make_far_slots() {
   }
 }
 
-void ContactLists::find_near(std::span<const Row> rows, double floor_height) {
+void ContactLists::find_near(std::span<const SphereRow> rows, double floor_height) {
   find_pairs(rows);
   find_sides(rows, floor_height);
   make_slots();
@@ -165,7 +166,7 @@ void ContactLists::fill(Near& near, std::size_t n) const {
   for (int k = 0; k < n_history_; ++k) near.history[k].resize(padded, 0.0);
 }
 
-void ContactLists::find_pairs(std::span<const Row> rows) {
+void ContactLists::find_pairs(std::span<const SphereRow> rows) {
   const Near old = std::exchange(near_, {});
   const std::vector<std::uint32_t> old_near_of = std::exchange(near_of_, {});
   near_of_.assign(far_.size(), none);
@@ -183,10 +184,9 @@ void ContactLists::find_pairs(std::span<const Row> rows) {
   std::vector<std::uint32_t> apart;
   for (std::uint32_t p = 0; p < far_.size(); ++p) {
     const FarPair& pair = far_[p];
-    const double* a = rows[pair.first].of;
-    const double* b = rows[pair.second].of;
-    const double x = a[0] - b[0] - pair.turns[0] * periods.x;
-    const double y = a[1] - b[1] - pair.turns[1] * periods.y, z = a[2] - b[2];
+    const SphereRow &a = rows[pair.first], &b = rows[pair.second];
+    const double x = a.x - b.x - pair.turns[0] * periods.x;
+    const double y = a.y - b.y - pair.turns[1] * periods.y, z = a.z - b.z;
     const double distance2 = x * x + y * y + z * z;
     const double touches = touching(pair), reach = touches + skin;
     if (distance2 < touches * touches) {
@@ -348,7 +348,7 @@ bool ContactLists::mostly_idle() const {
 
 std::size_t ContactLists::bytes() const {
   return far_.capacity() * sizeof(FarPair) + far_slots_.capacity() * sizeof(FarSlot) +
-         near_of_.capacity() * sizeof(std::uint32_t) + action_.capacity() * sizeof(Row) +
+         near_of_.capacity() * sizeof(std::uint32_t) + action_.capacity() * sizeof(ActionRow) +
          near_.first.capacity() *
              (3 * sizeof(std::uint32_t) +
               (2 + most_history + (sizes_ ? n_contact_sizes : 0)) * sizeof(double));

@@ -13,11 +13,11 @@
 
 namespace jostle::inline engine {
 
-inline Vec3 centre_of(const Row& sphere) {
-  return {sphere.of[0], sphere.of[1], sphere.of[2]};
+inline Vec3 centre_of(const SphereRow& sphere) {
+  return {sphere.x, sphere.y, sphere.z};
 }
-inline Vec3 velocity_of(const Row& sphere) {
-  return {sphere.of[4], sphere.of[5], sphere.of[6]};
+inline Vec3 velocity_of(const SphereRow& sphere) {
+  return {sphere.velocity_x, sphere.velocity_y, sphere.velocity_z};
 }
 
 /// History of a contact for a law.
@@ -54,9 +54,9 @@ class ContactLists {
   double skin_unit() const { return skin_unit_; }
 
   /// Everything anew, of the spheres at `rows` with these numbers. Histories stay.
-  void find_far(std::span<const Row> rows, std::span<const std::uint32_t> numbers);
+  void find_far(std::span<const SphereRow> rows, std::span<const std::uint32_t> numbers);
   /// Near pairs and sides, of the spheres at `rows`; the floor at `floor_height`.
-  void find_near(std::span<const Row> rows, double floor_height);
+  void find_near(std::span<const SphereRow> rows, double floor_height);
 
   /// Replaces all that is remembered, before anything is found.
   void keep(std::vector<KeptPair> pairs, std::vector<KeptSide> sides);
@@ -75,11 +75,11 @@ class ContactLists {
   /// KeptSide::side of each entry of sides().
   std::span<const std::uint32_t> side_numbers() const { return sides_.source; }
   /// Writes normals and distances of the sides.
-  void measure_sides(std::span<const Row> rows, double floor_height);
+  void measure_sides(std::span<const SphereRow> rows, double floor_height);
 
   std::span<const std::uint32_t> begin() const { return begin_; }
   std::span<const std::uint32_t> slots() const { return slots_; }
-  const Row* action() const { return action_.data(); }
+  const ActionRow* action() const { return action_.data(); }
   /// Upward forces of the contacts with the floor, summed in the order of the spheres.
   double floor_force() const;
   /// Contains 0 for every sphere on which nothing acts in this step; null unless nearly all pairs
@@ -116,13 +116,13 @@ class ContactLists {
     std::array<CacheLines<double>, most_history> history;
   };
 
-  void find_far_pairs(std::span<const Row> rows);
+  void find_far_pairs(std::span<const SphereRow> rows);
   std::vector<SizeClass> size_classes(double top) const;
   void make_far_slots();
-  void find_pairs(std::span<const Row> rows);
+  void find_pairs(std::span<const SphereRow> rows);
   void carry_pairs(const Near& old, std::span<const std::uint32_t> old_near_of);
   ContactHistory history_of(const Near& near, std::size_t at) const;
-  void find_sides(std::span<const Row> rows, double floor_height);
+  void find_sides(std::span<const SphereRow> rows, double floor_height);
   void carry_sides(Near& sides, const std::vector<KeptSide>& kept) const;
   void make_slots();
   bool mostly_idle() const;
@@ -155,7 +155,7 @@ class ContactLists {
   std::vector<KeptPair> waiting_pairs_;  // to be found among the next far pairs
   std::vector<KeptSide> waiting_sides_;
   std::vector<std::uint32_t> begin_, slots_;
-  std::vector<Row> action_;
+  std::vector<ActionRow> action_;
   std::vector<std::uint8_t> idle_;  // idle flag of each action, in the form of ContactArrays
   std::size_t first_idle_ = 0;      // near pairs from here on neither touch nor did a step ago
   std::vector<std::uint8_t> acted_upon_;  // [n_spheres + 2]

@@ -13,7 +13,7 @@ auto order(const KeptSide& side) {
 
 }  // namespace
 
-void ContactLists::find_sides(std::span<const Row> rows, double floor_height) {
+void ContactLists::find_sides(std::span<const SphereRow> rows, double floor_height) {
   std::vector<KeptSide> kept = kept_sides();
   waiting_sides_.clear();
   floor_ = {};
@@ -80,7 +80,7 @@ std::vector<KeptSide> ContactLists::kept_sides() const {
   return kept;
 }
 
-void ContactLists::measure_sides(std::span<const Row> rows, double floor_height) {
+void ContactLists::measure_sides(std::span<const SphereRow> rows, double floor_height) {
   // Where the numbers of a contact go: normal, distance.
   struct Columns {
     double *x, *y, *z, *distance;
@@ -98,7 +98,7 @@ void ContactLists::measure_sides(std::span<const Row> rows, double floor_height)
   };
   const Columns floor(floor_), sides(sides_);
   for (std::size_t at = 0; at < floor_.n; ++at)
-    floor.set(at, {0, 0, 1}, rows[floor_.first[at]].of[2] - floor_height);
+    floor.set(at, {0, 0, 1}, rows[floor_.first[at]].z - floor_height);
   for (std::size_t at = 0; at < sides_.n; ++at) {
     const Face& face = faces_[sides_.source[at]];
     const Vec3 r = centre_of(rows[sides_.first[at]]);
@@ -113,7 +113,7 @@ void ContactLists::measure_sides(std::span<const Row> rows, double floor_height)
 
 double ContactLists::floor_force() const {
   double sum = 0;
-  for (std::size_t at = 0; at < floor_.n; ++at) sum += action_[near_.first.size() + at].of[2];
+  for (std::size_t at = 0; at < floor_.n; ++at) sum += action_[near_.first.size() + at].force_z;
   return sum;
 }
 

@@ -73,7 +73,7 @@ HeldByContact held(GrainLaw law, const LawConstants& constants, const Approach& 
 }  // namespace
 
 Approach GrainLoop::approach_of(const KeptPair& pair) const {
-  const Row &first = rows_[place_of_[pair.first]], &second = rows_[place_of_[pair.second]];
+  const SphereRow &first = rows_[place_of_[pair.first]], &second = rows_[place_of_[pair.second]];
   const Vec3 periods = boundary_.periods();
   const Vec3 shift = {pair.turns[0] * periods.x, pair.turns[1] * periods.y, 0};
   const Vec3 between = centre_of(first) - centre_of(second) - shift;
@@ -83,7 +83,7 @@ Approach GrainLoop::approach_of(const KeptPair& pair) const {
 }
 
 Approach GrainLoop::approach_of(const KeptSide& side) const {
-  const Row& row = rows_[place_of_[side.sphere]];
+  const SphereRow& row = rows_[place_of_[side.sphere]];
   const Vec3 r = centre_of(row), v = velocity_of(row);
   const double radius = radius_of(side.sphere);
   if (side.side == 0) return {radius - (r.z - floor_.height), v.z - floor_.velocity};
@@ -135,9 +135,9 @@ Energies GrainLoop::energies() const {
   const SphereArrays all = next.spheres();
   for (const std::uint32_t at : next.place_of_) {
     for (std::uint32_t s = all.begin[at]; s < all.begin[at + 1]; ++s) {
-      const Row& action = all.action[all.slot[s] >> 1];
-      now.friction += action.of[4];
-      now.latched += action.of[5];
+      const ActionRow& action = all.action[all.slot[s] >> 1];
+      now.friction += action.dissipated_by_friction;
+      now.latched += action.dissipated_normally;
     }
   }
   if (kernels_.sees_full_step) {
@@ -156,7 +156,7 @@ Energies GrainLoop::energies() const {
         0.5 * sphere_inertia * mass_of(i) * radii * radii * norm_squared(moving.spins[i]);
   }
   for (std::uint32_t i = 0; i < n; ++i)
-    now.potential += settings_.gravity * mass_of(i) * rows_[place_of_[i]].of[2];
+    now.potential += settings_.gravity * mass_of(i) * rows_[place_of_[i]].z;
   now.floor_work = next.floor_work_;
   return now;
 }

@@ -8,8 +8,8 @@ namespace jostle::inline engine {
 
 namespace {
 
-Vec3 triple(const Row& row, int at) {
-  return {row.of[at], row.of[at + 1], row.of[at + 2]};
+Vec3 force_of(const ActionRow& action) {
+  return {action.force_x, action.force_y, action.force_z};
 }
 
 // Splits what acts on the first body.
@@ -45,7 +45,7 @@ void GrainLoop::add_contacts(std::vector<Contact>& out) {
                     .second = numbers_[b],
                     .overlap = radius_of(numbers_[a]) + radius_of(numbers_[b]) - distance,
                     .normal = (1 / distance) * between};
-    set_force(contact, triple(pairs.action[at], 0), kernels_.has_spin);
+    set_force(contact, force_of(pairs.action[at]), kernels_.has_spin);
     if (has_force(contact)) out.push_back(contact);
   }
   const auto add_walls = [&](const ContactArrays& with, auto&& number_of) {
@@ -55,7 +55,7 @@ void GrainLoop::add_contacts(std::vector<Contact>& out) {
                       .second = n + number_of(at),
                       .overlap = radius_of(numbers_[with.first[at]]) - with.side[3][at],
                       .normal = {with.side[0][at], with.side[1][at], with.side[2][at]}};
-      set_force(contact, triple(with.action[at], 0), kernels_.has_spin);
+      set_force(contact, force_of(with.action[at]), kernels_.has_spin);
       if (has_force(contact)) out.push_back(contact);
     }
   };
@@ -76,10 +76,10 @@ void GrainLoop::add_velocities(BedMechanics& out) {
     const double per_mass = 1 / mass_of(number);
     Vec3 force = {0, 0, -settings_.gravity * mass_of(number)}, torque;
     for (std::uint32_t s = all.begin[at]; s < all.begin[at + 1]; ++s) {
-      const Row& action = all.action[all.slot[s] >> 1];
+      const ActionRow& action = all.action[all.slot[s] >> 1];
       const double sign = (all.slot[s] & 1) != 0 ? -1 : 1;
-      force = force + sign * triple(action, 0);
-      torque = torque + Vec3{action.of[7], action.of[3], action.of[6]};
+      force = force + sign * force_of(action);
+      torque = torque + Vec3{action.torque_x, action.torque_y, action.torque_z};
     }
     out.velocities[number] = before[number].velocity + half_step * per_mass * force;
     if (!kernels_.has_spin) continue;

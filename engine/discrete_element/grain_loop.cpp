@@ -35,8 +35,8 @@ GrainKernels kernels_of(GrainLaw law, GrainSizes sizes, InstructionSet set) {
   throw_not_compiled_in(set);
 }
 
-Vec3 spin_of(const Row& row, double spin_z) {
-  return {row.of[3], row.of[7], spin_z};
+Vec3 spin_of(const SphereRow& row, double spin_z) {
+  return {row.spin_x, row.spin_y, spin_z};
 }
 
 // Places in the order of cells as wide as two spheres, so that neighbours lie near in memory.
@@ -92,8 +92,8 @@ void GrainLoop::place(const std::vector<GrainState>& grains) {
   half_rows_.assign(kernels_.sees_full_step ? n + 2 : 0, {});
   half_spin_z_.assign(kernels_.sees_full_step ? n + 2 : 0, 0);
   dissipated_.resize(2 * n);
-  const auto put = [](Row& row, double& spin_z, Vec3 centre, Vec3 velocity, Vec3 spin) {
-    row = {{centre.x, centre.y, centre.z, spin.x, velocity.x, velocity.y, velocity.z, spin.y}};
+  const auto put = [](SphereRow& row, double& spin_z, Vec3 centre, Vec3 velocity, Vec3 spin) {
+    row = {centre.x, centre.y, centre.z, spin.x, velocity.x, velocity.y, velocity.z, spin.y};
     spin_z = spin.z;
   };
   for (std::uint32_t at = 0; at < n; ++at) {
@@ -108,8 +108,8 @@ void GrainLoop::place(const std::vector<GrainState>& grains) {
       put(rows_[at], spin_z_[at], grain.centre, grain.velocity, grain.spin);
     }
   }
-  rows_[n].of[2] = -1e3;  // the padding of blocks touches nothing
-  rows_[n + 1].of[2] = -2e3;
+  rows_[n].z = -1e3;  // the padding of blocks touches nothing
+  rows_[n + 1].z = -2e3;
   if (sizes_) place_sizes();
   have_lists_ = false;
 }
@@ -127,12 +127,12 @@ std::vector<GrainState> GrainLoop::grains() const {
   std::vector<GrainState> grains(numbers_.size());
   for (std::uint32_t at = 0; at < numbers_.size(); ++at) {
     GrainState& grain = grains[numbers_[at]];
-    const Row& seen = rows_[at];
-    const bool apart = kernels_.sees_full_step;
-    const Row& moving = apart ? half_rows_[at] : seen;
+    const SphereRow& seen = rows_[at];
+    const bool has_half_rows = kernels_.sees_full_step;
+    const SphereRow& moving = has_half_rows ? half_rows_[at] : seen;
     grain.centre = centre_of(seen);
     grain.velocity = velocity_of(moving);
-    grain.spin = spin_of(moving, apart ? half_spin_z_[at] : spin_z_[at]);
+    grain.spin = spin_of(moving, has_half_rows ? half_spin_z_[at] : spin_z_[at]);
     grain.seen_velocity = velocity_of(seen);
     grain.seen_spin = spin_of(seen, spin_z_[at]);
     grain.friction = dissipated_[2 * at];
@@ -160,11 +160,11 @@ void GrainLoop::displace(const Packing& to) {
   Packing from;
   store(from);
   for (std::uint32_t i = 0; i < numbers_.size(); ++i) {
-    const Vec3 by = separation(boundary_, to.centres[i], from.centres[i]);
-    double* r = rows_[place_of_[i]].of;
-    r[0] += by.x;
-    r[1] += by.y;
-    r[2] += by.z;
+    const Vec3 displacement = separation(boundary_, to.centres[i], from.centres[i]);
+    SphereRow& row = rows_[place_of_[i]];
+    row.x += displacement.x;
+    row.y += displacement.y;
+    row.z += displacement.z;
   }
   have_lists_ = false;
 }
@@ -199,7 +199,7 @@ void GrainLoop::find_forces() {
   floor_ = motion_.at(time_);
   side_path_ += std::abs(floor_.height - before.height);
   if (!near_lists_hold()) renew_lists();
-  const std::span<const Row> rows(rows_.data(), numbers_.size());
+  const std::span<const SphereRow> rows(rows_.data(), numbers_.size());
   lists_.measure_sides(rows, floor_.height);
   const SphereArrays grains = spheres();
   ContactArrays floor = lists_.floor();
@@ -280,11 +280,11 @@ void GrainLoop::renew_lists() {
 
 double GrainLoop::kinetic_energy() const {
   double sum = 0;
-  const bool apart = kernels_.sees_full_step;
+  const bool has_half_rows = kernels_.sees_full_step;
   for (std::uint32_t number = 0; number < place_of_.size(); ++number) {
     const std::uint32_t at = place_of_[number];
-    const Row& row = apart ? half_rows_[at] : rows_[at];
-    const double spin_z = apart ? half_spin_z_[at] : spin_z_[at];
+    const SphereRow& row = has_half_rows ? half_rows_[at] : rows_[at];
+    const double spin_z = has_half_rows ? half_spin_z_[at] : spin_z_[at];
     sum += mass_of(number) * norm_squared(velocity_of(row)) +
            inertia_of(number) * norm_squared(spin_of(row, spin_z));
   }
@@ -311,7 +311,7 @@ bool GrainLoop::is_sound() const {
 }
 
 std::size_t GrainLoop::bytes() const {
-  return lists_.bytes() + (rows_.capacity() + half_rows_.capacity()) * sizeof(Row);
+  return lists_.bytes() + (rows_.capacity() + half_rows_.capacity()) * sizeof(SphereRow);
 }
 
 GrainLoop::State GrainLoop::state() const {

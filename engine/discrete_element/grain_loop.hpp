@@ -50,8 +50,21 @@ struct GrainState {
   double friction = 0, latched = 0;  // dissipated since the loop was loaded
 };
 
-/// Spheres that move by Newton's equations, in steps of one length. All results are the same on
-/// every instruction set, and however spheres are sorted and lists are made.
+/// Spheres that move by Newton's equations with the forces of contact_law.hpp, in steps dt of one
+/// length, by the leap-frog: velocities and spins are half a step behind the positions. The
+/// method is that of Cundall & Strack, Geotechnique 29, 47 (1979); Rosato et al. 2010, sec. III.
+/// With x_k, the positions at the time k dt, a step is
+///
+///   1. the floor goes to its place at k dt                                        FloorMotion
+///   2. lists of near pairs are renewed unless all that touch are in them          ContactLists
+///   3. F_k = F(x_k, v, histories), of pairs, floor and sides                      contact_law.hpp
+///   4. v_(k+1/2) = v_(k-1/2) + dt (F_k / m - g z),  x_(k+1) = x_k + dt v_(k+1/2) grain_kernels.cpp
+///
+/// and so for spins with the torques. WaltonBraunLaw takes v = v_(k-1/2), which gives the
+/// displacement of the last step; LinearLaw, whose dashpots need the velocity at the time of the
+/// positions, v_(k-1/2) + dt a_(k-1) / 2. Invariants: every pair that overlaps is in the near
+/// lists; a sphere sums its contacts in the order of the spheres' numbers, so that results are the
+/// same on every instruction set, and however spheres are sorted and lists are made.
 class GrainLoop {
  public:
   /// Sizes of the spheres, or null for equal ones.
@@ -142,9 +155,9 @@ class GrainLoop {
   GrainKernels kernels_;
   ContactLists lists_;
 
-  std::vector<std::uint32_t> numbers_;   // numbers of the sphere at each place
-  std::vector<std::uint32_t> place_of_;  // place of each sphere
-  std::vector<Row> rows_, half_rows_;    // [n_spheres + 2]
+  std::vector<std::uint32_t> numbers_;       // numbers of the sphere at each place
+  std::vector<std::uint32_t> place_of_;      // place of each sphere
+  std::vector<SphereRow> rows_, half_rows_;  // [n_spheres + 2]
   std::vector<double> spin_z_, half_spin_z_, dissipated_;
   std::vector<double> mass_at_, per_mass_at_;  // [n_spheres] by place; empty of equal spheres
 

@@ -1,19 +1,32 @@
 #pragma once
 
-#include <cstdint>
-
 #include "engine/discrete_element/kernel/law_constants.hpp"
+#include "engine/discrete_element/kernel/vector3.hpp"
 
-// The force of a contact, for one contact (N = double) or for as many as vectors of doubles have
-// room for (N = Wide, kernel/lanes.hpp): the same operations in the same order, so the same bits.
-// All of it is inlined, for it is compiled once for every instruction set. Lengths in diameters,
-// masses in sphere masses, times in sqrt(diameter / gravity).
+// The force of a contact. With the overlap a, the normal n towards sphere i, the relative velocity
+// v of the centres, the tangential displacement s of a step and the time step dt:
+//
+//   WaltonBraunLaw (Walton & Braun 1986; Rosato et al. 2010, sec. III)
+//     N    = K1 a while a grows, K2 (a - a0) below the greatest overlap, never negative;
+//            K2 = K1 / e^2, a0 = (1 - e^2) x the greatest overlap
+//     T   -> T - K_T s along T, T - K0 s across it, then cut to |T| = mu N
+//     K_T  = K0 ((1 - t) / (1 - t*))^(1/3) while T grows, K0 ((1 + t) / (1 + t*))^(1/3) while it
+//            shrinks; t = T / (mu N), t* = t at the last reversal, 0 at first
+//   LinearLaw (Cundall & Strack 1979)
+//     N    = k_n a - c_n v.n
+//     T    = -(k_t x the displacement since the bodies touched + c_t x the sliding velocity),
+//            then cut to |T| = mu |N|
+//
+// A tangential force of the step before is first turned with the pair: projected(), turned().
+// Sliding velocity: sliding_velocity(). The loop that calls the laws: grain_loop.hpp.
+//
+// Everything is written for one contact (N = double) or for as many as vectors of doubles hold (N =
+// Wide, kernel/lanes.hpp): the same operations in the same order, so the same bits. All of it is
+// inlined, for it is compiled once for every instruction set. Lengths in diameters, masses in
+// sphere masses, times in sqrt(diameter / gravity).
 namespace jostle::inline engine {
 
 #define JOSTLE_INLINE [[gnu::always_inline]] inline
-
-// The upper half of 1.33 times the bits of 1: what a guess of x^(-1/3) takes a third of x's from.
-inline constexpr std::int64_t inverse_cube_root_bits = 0x553ef0ff;
 
 // A tangential force shorter than this, whose square has no inverse, counts as none.
 inline constexpr double least_force = 1e-140;
@@ -21,79 +34,6 @@ inline constexpr double least_force = 1e-140;
 // Largest component across the force, relative to the square of a slip, of a path that counts as
 // straight.
 inline constexpr double one_dimensional = 1e-9;
-
-// The functions of Wide for one number.
-JOSTLE_INLINE double select(bool mask, double yes, double no) {
-  return mask ? yes : no;
-}
-JOSTLE_INLINE bool any_of(bool mask) {
-  return mask;
-}
-JOSTLE_INLINE double lesser(double a, double b) {
-  return a < b ? a : b;
-}
-JOSTLE_INLINE double greater(double a, double b) {
-  return a > b ? a : b;
-}
-JOSTLE_INLINE double square_root(double x) {
-  return __builtin_sqrt(x);
-}
-/// Less a third of the exponent, and of what follows it: within 5 % of x^(-1/3), x > 0.
-JOSTLE_INLINE double inverse_cube_root_guess(double x) {
-  const std::int64_t high = __builtin_bit_cast(std::int64_t, x) >> 32;
-  return __builtin_bit_cast(double, (inverse_cube_root_bits - ((high * 0x55555556) >> 32)) << 32);
-}
-
-template <class N>
-struct Vector3 {
-  N x, y, z;
-};
-
-template <class N>
-JOSTLE_INLINE Vector3<N> operator+(const Vector3<N>& a, const Vector3<N>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class N>
-JOSTLE_INLINE Vector3<N> operator-(const Vector3<N>& a, const Vector3<N>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class N>
-JOSTLE_INLINE Vector3<N> scaled(const N& s, const Vector3<N>& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-template <class N>
-JOSTLE_INLINE N dot(const Vector3<N>& a, const Vector3<N>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <class N>
-JOSTLE_INLINE Vector3<N> cross(const Vector3<N>& a, const Vector3<N>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-/// The vector where the mask is set, else 0.
-template <class Mask, class N>
-JOSTLE_INLINE Vector3<N> masked(const Mask& mask, const Vector3<N>& a) {
-  const N zero{};
-  return {select(mask, a.x, zero), select(mask, a.y, zero), select(mask, a.z, zero)};
-}
-
-/// (1 + u)^(-1/2) to 0.3 u^4, for u near 0.
-template <class N>
-JOSTLE_INLINE N inverse_root_by_series(const N& u) {
-  return 1.0 - u * (0.5 - u * (0.375 - u * 0.3125));
-}
-
-/// The cube root of x in [1e-300, 1] to 1e-14: Householder's method of the fourth order for
-/// x^(-1/3), which needs no division.
-template <class N>
-JOSTLE_INLINE N cube_root_of(const N& x) {
-  N inverse = inverse_cube_root_guess(x);
-  for (int step = 0; step < 2; ++step) {
-    const N miss = 1.0 - x * inverse * inverse * inverse;
-    inverse = inverse + inverse * miss * (1.0 / 3.0 + miss * (2.0 / 9.0 + miss * (14.0 / 81.0)));
-  }
-  return x * inverse * inverse;
-}
 
 /// Where two bodies meet: sphere i of diameter 1, and such a sphere j or a side.
 template <class N>
@@ -136,8 +76,8 @@ struct ContactAction {
 /// The relative velocity of the surfaces where they meet, along the tangent plane; `speed` is that
 /// of the centres along the normal, in which spins have no part.
 template <class N>
-JOSTLE_INLINE Vector3<N> sliding_velocity(const Meeting<N>& at, const N& speed) {
-  return at.velocity - scaled(speed, at.normal) - cross(at.spin, at.arm);
+JOSTLE_INLINE Vector3<N> sliding_velocity(const Meeting<N>& meeting, const N& speed) {
+  return meeting.velocity - scaled(speed, meeting.normal) - cross(meeting.spin, meeting.arm);
 }
 
 /// A force which lay in the tangent plane of the step before, turned with the pair: by the mean
@@ -148,30 +88,31 @@ struct Projected {
   Vector3<N> force;
   N change;
 };
-template <class N, class At>
-JOSTLE_INLINE Projected<N> projected(const Vector3<N>& old, const N& inverse2, const At& at,
-                                     double time_step) {
-  const N twist = at.twist(time_step);
-  const N out = dot(old, at.normal);  // component out of the plane
+template <class N, class AnyMeeting>
+JOSTLE_INLINE Projected<N> projected(const Vector3<N>& old, const N& inverse2,
+                                     const AnyMeeting& meeting, double time_step) {
+  const N twist = meeting.twist(time_step);
+  const N out = dot(old, meeting.normal);  // component out of the plane
   const N twist2 = twist * twist, tilt2 = out * out * inverse2;
-  return {old + scaled(twist, cross(at.normal, old)) - scaled(out, at.normal),
+  return {old + scaled(twist, cross(meeting.normal, old)) - scaled(out, meeting.normal),
           lesser(twist2 - tilt2 * (1.0 + twist2), N(1.0))};
 }
 
-/// A force in the tangent plane, by its length and direction; without any, the direction is 0.
+/// A force in the tangent plane, its unit vector (0 without a force) and its length.
 template <class N>
 struct TangentialForce {
-  Vector3<N> force, along;
+  Vector3<N> force, unit;
   N length;
 };
 
 /// The force `old` in the present plane, with the length that it had.
-template <class N, class At>
-JOSTLE_INLINE TangentialForce<N> turned(const Vector3<N>& old, const At& at, double time_step) {
+template <class N, class AnyMeeting>
+JOSTLE_INLINE TangentialForce<N> turned(const Vector3<N>& old, const AnyMeeting& meeting,
+                                        double time_step) {
   const N zero{};
   const N length = square_root(dot(old, old));
   const N inverse = 1.0 / select(length > zero + least_force, length, zero + 1.0);
-  const auto [plane, change] = projected(old, inverse * inverse, at, time_step);
+  const auto [plane, change] = projected(old, inverse * inverse, meeting, time_step);
   const Vector3<N> force = scaled(inverse_root_by_series(change), plane);
   return {force, scaled(inverse, force), length};
 }
@@ -207,82 +148,83 @@ struct WaltonBraunLaw {
   }
 
   /// True if they touch or have touched: if not, there is neither action nor history.
-  JOSTLE_INLINE bool is_at_work(const Meeting<N>& at) const {
+  JOSTLE_INLINE bool is_at_work(const Meeting<N>& meeting) const {
     const N zero{};
-    return any_of(at.overlap > zero) || any_of(greatest > zero);
+    return any_of(meeting.overlap > zero) || any_of(greatest > zero);
   }
 
-  template <class At>
-  JOSTLE_INLINE ContactAction<N> operator()(const At& at, const LawConstants& law) {
+  template <class AnyMeeting>
+  JOSTLE_INLINE ContactAction<N> operator()(const AnyMeeting& meeting, const LawConstants& law) {
     const N zero{};
-    const auto touching = at.overlap > zero;
+    const auto touching = meeting.overlap > zero;
     const N before = greatest;
-    greatest = greater(before, at.overlap);
-    const N unloading = law.unloading * (at.overlap - law.latched * greatest);
-    N normal_force = lesser(law.stiffness * at.overlap, greater(unloading, zero));
+    greatest = greater(before, meeting.overlap);
+    const N unloading = law.unloading * (meeting.overlap - law.latched * greatest);
+    N normal_force = lesser(law.stiffness * meeting.overlap, greater(unloading, zero));
     normal_force = select(touching, normal_force, zero);
     // Latched energy is lost when the contact opens, which erases its history.
-    ContactAction<N> act;
-    act.dissipated_normally =
+    ContactAction<N> action;
+    action.dissipated_normally =
         select(touching, zero, (0.5 * law.stiffness * law.latched) * before * before);
     greatest = select(touching, greatest, zero);
-    act.force = scaled(normal_force, at.normal);
-    act.torque = {zero, zero, zero};
-    act.dissipated_by_friction = zero;
-    if constexpr (friction) shear(at, law, normal_force, act);
-    return act;
+    action.force = scaled(normal_force, meeting.normal);
+    action.torque = {zero, zero, zero};
+    action.dissipated_by_friction = zero;
+    if constexpr (friction) shear(meeting, law, normal_force, action);
+    return action;
   }
 
  private:
-  /// T* / (mu N) of a force that shrank and, at this share of mu N, grows without a reversal: what
-  /// leaves K_T as it is, (mu N - T)/(mu N - T*) = (mu N + T)/(mu N + T* before). At zero: -T*.
-  JOSTLE_INLINE N beyond_zero(const N& share) const {
-    return 1.0 - (1.0 - share) * (1.0 + reversal) / (1.0 + share);
+  /// The t* of a force that shrank and, at this t, grows without a reversal. It leaves K_T as it
+  /// is: (1 - t) / (1 - t*) = (1 + t) / (1 + t* before). At t = 0: minus t* before.
+  JOSTLE_INLINE N beyond_zero(const N& mobilized) const {
+    return 1.0 - (1.0 - mobilized) * (1.0 + reversal) / (1.0 + mobilized);
   }
 
-  template <class At>
-  JOSTLE_INLINE void shear(const At& at, const LawConstants& law, const N& normal_force,
-                           ContactAction<N>& act) {
+  template <class AnyMeeting>
+  JOSTLE_INLINE void shear(const AnyMeeting& meeting, const LawConstants& law,
+                           const N& normal_force, ContactAction<N>& action) {
     const N zero{}, one = zero + 1.0;
-    const auto touching = at.overlap > zero;
-    const auto [start, along, length] = turned(tangential, at, law.time_step);
-    const N before2 = length * length;
-    const N lost = (0.5 / law.tangential) * before2;  // if it opens
-    const N speed = dot(at.velocity, at.normal);
-    const Vector3<N> step = scaled(zero + law.time_step, sliding_velocity(at, speed));
-    const N growth = zero - dot(step, along);  // the displacement that makes the force grow
+    const auto touching = meeting.overlap > zero;
+    const auto [start, unit, length] = turned(tangential, meeting, law.time_step);
+    const N start2 = length * length;
+    const N released = (0.5 / law.tangential) * start2;  // if it opens
+    const N speed = dot(meeting.velocity, meeting.normal);
+    const Vector3<N> step = scaled(zero + law.time_step, sliding_velocity(meeting, speed));
+    const N growth = zero - dot(step, unit);  // the displacement that makes the force grow
     const N limit = law.friction * normal_force;
 
-    // T* is T at each reversal; stored as a share of mu N, it follows N.
-    N direction = 1.0 - 2.0 * shrinking;
-    const N towards = select(growth > zero, one, select(growth < zero, zero - one, direction));
-    const N share = length / select(limit > zero, limit, one);
-    const N at_reversal = lesser(share, one);
-    N next = at_reversal;
-    const auto grows_again = towards > direction;
+    // loading: 1 while T grows, -1 while it shrinks. t* is t at each reversal: as a share of mu N
+    // it follows N.
+    N loading = 1.0 - 2.0 * shrinking;
+    const N loading_now = select(growth > zero, one, select(growth < zero, zero - one, loading));
+    const N mobilized = length / select(limit > zero, limit, one);
+    const N mobilized_now = lesser(mobilized, one);
+    N next = mobilized_now;
+    const auto grows_again = loading_now > loading;
     if (any_of(grows_again)) {
       // This slip on the force one such step before, T + K0 s: where it shrinks that one, it is the
       // force that turned, passing zero on one side, and no slip that turned round.
       const N step2 = dot(step, step), aside2 = (1.0 - one_dimensional) * step2 - growth * growth;
       const N turned_by = law.tangential * step2 - length * growth;
       const auto passes_zero = select(grows_again, lesser(turned_by, aside2), zero) > zero;
-      next = select(passes_zero, beyond_zero(at_reversal), at_reversal);
+      next = select(passes_zero, beyond_zero(mobilized_now), mobilized_now);
     }
-    reversal = select(towards * direction < zero, next, reversal);
-    direction = towards;
+    reversal = select(loading_now * loading < zero, next, reversal);
+    loading = loading_now;
 
-    const N room = 1.0 - direction * share;  // shares of mu N
-    const N whole = 1.0 - direction * reversal;
-    const N rest = room / select(whole > zero, whole, one);
-    const N left = select(whole > zero, greater(lesser(rest, one), zero), zero);
-    const N floor = zero + 1e-30;
-    const N softened = law.tangential * cube_root_of(greater(left, floor));
+    const N numerator = 1.0 - loading * mobilized;
+    const N denominator = 1.0 - loading * reversal;
+    const N quotient = numerator / select(denominator > zero, denominator, one);
+    const N fraction = select(denominator > zero, greater(lesser(quotient, one), zero), zero);
+    const N least = zero + 1e-30;
+    const N softened = law.tangential * cube_root_of(greater(fraction, least));  // K_T
     // K_T along the force, K0 across it.
     const N extra = (softened - law.tangential) * growth;
-    Vector3<N> end = start - scaled(zero + law.tangential, step) + scaled(extra, along);
-    const auto flipped = dot(end, along) < zero;
+    Vector3<N> end = start - scaled(zero + law.tangential, step) + scaled(extra, unit);
+    const auto flipped = dot(end, unit) < zero;
     reversal = select(flipped, zero - reversal, reversal);
-    direction = select(flipped, zero - direction, direction);
+    loading = select(flipped, zero - loading, loading);
     N end2 = dot(end, end);
     const N limit2 = limit * limit;
     const auto slides = end2 > limit2;
@@ -294,13 +236,13 @@ struct WaltonBraunLaw {
 
     // Work on the contact in this step, less what its spring K0 then holds.
     const N work = zero - 0.5 * dot(start + end, step);
-    const N slip = work - (0.5 / law.tangential) * (end2 - before2);
-    act.dissipated_by_friction = select(touching, slip, lost);
+    const N slip_energy = work - (0.5 / law.tangential) * (end2 - start2);
+    action.dissipated_by_friction = select(touching, slip_energy, released);
     tangential = masked(touching, end);
     reversal = select(touching, reversal, zero);
-    shrinking = select(touching, 0.5 - 0.5 * direction, zero);
-    act.torque = cross(tangential, at.arm);
-    act.force = act.force + tangential;
+    shrinking = select(touching, 0.5 - 0.5 * loading, zero);
+    action.torque = cross(tangential, meeting.arm);
+    action.force = action.force + tangential;
   }
 };
 
@@ -326,46 +268,46 @@ struct LinearLaw {
     }
   }
 
-  JOSTLE_INLINE bool is_at_work(const Meeting<N>& at) const {
+  JOSTLE_INLINE bool is_at_work(const Meeting<N>& meeting) const {
     const N zero{};
-    return any_of(at.overlap > zero) || any_of(dot(spring, spring) > zero);
+    return any_of(meeting.overlap > zero) || any_of(dot(spring, spring) > zero);
   }
 
-  template <class At>
-  JOSTLE_INLINE ContactAction<N> operator()(const At& at, const LawConstants& law) {
+  template <class AnyMeeting>
+  JOSTLE_INLINE ContactAction<N> operator()(const AnyMeeting& meeting, const LawConstants& law) {
     const N zero{};
-    const auto touching = at.overlap > zero;
-    const N speed = dot(at.velocity, at.normal);
-    const auto damping = at.damping_of(law.damping);
-    const N resisting = law.stiffness * at.overlap - damping * speed;
+    const auto touching = meeting.overlap > zero;
+    const N speed = dot(meeting.velocity, meeting.normal);
+    const auto damping = meeting.damping_of(law.damping);
+    const N resisting = law.stiffness * meeting.overlap - damping * speed;
     const N normal_force = select(touching, resisting, zero);
     const N damped = (damping * law.time_step) * speed * speed;
-    ContactAction<N> act;
-    act.dissipated_normally = select(touching, damped, zero);
-    act.force = scaled(normal_force, at.normal);
-    act.torque = {zero, zero, zero};
-    act.dissipated_by_friction = zero;
-    if constexpr (friction) shear(at, law, speed, normal_force, act);
-    return act;
+    ContactAction<N> action;
+    action.dissipated_normally = select(touching, damped, zero);
+    action.force = scaled(normal_force, meeting.normal);
+    action.torque = {zero, zero, zero};
+    action.dissipated_by_friction = zero;
+    if constexpr (friction) shear(meeting, law, speed, normal_force, action);
+    return action;
   }
 
  private:
-  template <class At>
-  JOSTLE_INLINE void shear(const At& at, const LawConstants& law, const N& speed,
-                           const N& normal_force, ContactAction<N>& act) {
+  template <class AnyMeeting>
+  JOSTLE_INLINE void shear(const AnyMeeting& meeting, const LawConstants& law, const N& speed,
+                           const N& normal_force, ContactAction<N>& action) {
     const N zero{}, one = zero + 1.0;
-    const auto touching = at.overlap > zero;
+    const auto touching = meeting.overlap > zero;
     const N spring2 = dot(spring, spring);
     const N held = (0.5 / law.tangential) * spring2;
-    const Vector3<N> velocity = sliding_velocity(at, speed);
+    const Vector3<N> velocity = sliding_velocity(meeting, speed);
     const N stretch = zero + law.tangential * law.time_step;
     const N inverse2 = 1.0 / select(spring2 > zero + least_force * least_force, spring2, one);
-    const auto [plane, change] = projected(spring, inverse2, at, law.time_step);
+    const auto [plane, change] = projected(spring, inverse2, meeting, law.time_step);
     const Vector3<N> start = scaled(inverse_root_by_series(change), plane);  // with its old length
     const Vector3<N> trial = start + scaled(stretch, velocity);
     // Half the last displacement comes after this step's positions.
     const N ahead =
-        zero + (at.damping_of(law.shear_damping) - 0.5 * law.tangential * law.time_step);
+        zero + (meeting.damping_of(law.shear_damping) - 0.5 * law.tangential * law.time_step);
     const Vector3<N> resisting = trial + scaled(ahead, velocity);
     const N size2 = dot(resisting, resisting);
     const N limit = law.friction * greater(normal_force, zero - normal_force);
@@ -379,11 +321,11 @@ struct LinearLaw {
     // Work on the contact in this step, less what its spring then holds.
     const N work = law.time_step * dot(acting, velocity);
     const N rubbed = work - (0.5 / law.tangential) * (dot(kept, kept) - spring2);
-    act.dissipated_by_friction = select(touching, rubbed, held);
+    action.dissipated_by_friction = select(touching, rubbed, held);
     spring = masked(touching, kept);
     const Vector3<N> force = masked(touching, scaled(zero - 1.0, acting));
-    act.torque = cross(force, at.arm);
-    act.force = act.force + force;
+    action.torque = cross(force, meeting.arm);
+    action.force = action.force + force;
   }
 };
 

@@ -1,5 +1,6 @@
 // Compiled once for every instruction set, each time into a namespace of its own (JOSTLE_KERNELS).
 // It must instantiate nothing that another translation unit could pick up.
+#include <cstddef>
 #include <type_traits>
 
 #include "engine/discrete_element/kernel/contact_law.hpp"
@@ -20,6 +21,28 @@ using HalfBits = std::int64_t __attribute__((vector_size(32)));
   return *reinterpret_cast<const Half*>(from);
 }
 
+// The eight numbers of a row. (By its first member: of the row itself gcc 12 makes longer code.)
+[[gnu::always_inline]] inline double* numbers_of(SphereRow& row) {
+  return &row.x;
+}
+[[gnu::always_inline]] inline const double* numbers_of(const SphereRow& row) {
+  return &row.x;
+}
+[[gnu::always_inline]] inline double* numbers_of(ActionRow& row) {
+  return &row.force_x;
+}
+[[gnu::always_inline]] inline const double* numbers_of(const ActionRow& row) {
+  return &row.force_x;
+}
+
+// advance_spheres() adds halves: a component of an action changes the one of a sphere at its place.
+static_assert(offsetof(ActionRow, force_x) % 32 == offsetof(SphereRow, velocity_x) % 32);
+static_assert(offsetof(ActionRow, torque_y) % 32 == offsetof(SphereRow, spin_y) % 32);
+static_assert(offsetof(ActionRow, torque_x) % 32 == offsetof(SphereRow, spin_x) % 32);
+
+// Places in the second half of an action.
+constexpr int friction_place = 0, normal_place = 1, torque_z_place = 2;
+
 // Loads numbers of a law's history, and stores them.
 template <class Law>
 [[gnu::always_inline]] inline void read_history(Law& law, const ContactArrays& contacts,
@@ -37,35 +60,49 @@ template <class Law>
 }
 
 [[gnu::always_inline]] inline void write_action(const ContactArrays& contacts, std::size_t at,
-                                                const ContactAction<Wide>& act, double share) {
-  const Wide friction = share * act.dissipated_by_friction;
-  const Wide normal = share * act.dissipated_normally;
+                                                const ContactAction<Wide>& action, double share) {
+  const Wide friction = share * action.dissipated_by_friction;
+  const Wide normal = share * action.dissipated_normally;
   for (std::uint32_t p = 0; p < n_parts; ++p) {
-    Lanes m[8] = {act.force.x.part[p],  act.force.y.part[p], act.force.z.part[p],
-                  act.torque.y.part[p], friction.part[p],    normal.part[p],
-                  act.torque.z.part[p], act.torque.x.part[p]};
+    Lanes m[8] = {action.force.x.part[p],  action.force.y.part[p], action.force.z.part[p],
+                  action.torque.y.part[p], friction.part[p],       normal.part[p],
+                  action.torque.z.part[p], action.torque.x.part[p]};  // as an ActionRow
     columns_to_rows(m);
-    double* rows = contacts.action[at + p * n_lanes].of;
+    double* rows = numbers_of(contacts.action[at + p * n_lanes]);
     for (std::uint32_t k = 0; k < 8; ++k) lanes_at(rows + k * n_lanes) = m[k];
   }
 }
 
-// Data of the spheres in a block of contacts: for pairs the differences of their rows, with the
-// spins added; for sides the rows themselves.
-struct Columns {
-  Wide of[8], spin_z;
+// Data of the spheres in a block of contacts: for pairs the differences of positions and velocities
+// and the sums of the spins; for sides those of the sphere.
+struct BlockData {
+  Vector3<Wide> position, velocity, spin;
 };
 
+// Transposes the rows of a part of a block, or their differences, into components.
+[[gnu::always_inline]] inline void set_components(BlockData& block, std::uint32_t p,
+                                                  Lanes (&rows)[8]) {
+  rows_to_columns(rows);
+  block.position.x.part[p] = rows[0];
+  block.position.y.part[p] = rows[1];
+  block.position.z.part[p] = rows[2];
+  block.spin.x.part[p] = rows[3];
+  block.velocity.x.part[p] = rows[4];
+  block.velocity.y.part[p] = rows[5];
+  block.velocity.z.part[p] = rows[6];
+  block.spin.y.part[p] = rows[7];
+}
+
 template <bool spin>
-[[gnu::always_inline]] inline Columns of_pairs(const SphereArrays& spheres,
-                                               const ContactArrays& contacts, std::size_t at) {
+[[gnu::always_inline]] inline BlockData pair_data(const SphereArrays& spheres,
+                                                  const ContactArrays& contacts, std::size_t at) {
   constexpr std::uint32_t per_row = 8 / n_lanes;  // vectors
-  Columns out;
+  BlockData out;
   for (std::uint32_t p = 0; p < n_parts; ++p, at += n_lanes) {
     Lanes m[8];
     for (std::uint32_t lane = 0; lane < n_lanes; ++lane) {
-      const double* a = spheres.rows[contacts.first[at + lane]].of;
-      const double* b = spheres.rows[contacts.second[at + lane]].of;
+      const double* a = numbers_of(spheres.rows[contacts.first[at + lane]]);
+      const double* b = numbers_of(spheres.rows[contacts.second[at + lane]]);
       for (std::uint32_t k = 0; k < per_row; ++k) {
         LaneBits minus{};  // sign of the added rows: spins
         for (std::uint32_t l = 0; l < n_lanes; ++l)
@@ -74,38 +111,37 @@ template <bool spin>
             lanes_at(a + k * n_lanes) - (Lanes)((LaneBits)lanes_at(b + k * n_lanes) ^ minus);
       }
       if constexpr (spin)
-        out.spin_z.part[p][lane] =
+        out.spin.z.part[p][lane] =
             spheres.spin_z[contacts.first[at + lane]] + spheres.spin_z[contacts.second[at + lane]];
     }
-    rows_to_columns(m);
-    for (std::uint32_t k = 0; k < 8; ++k) out.of[k].part[p] = m[k];
+    set_components(out, p, m);
   }
   return out;
 }
 
 template <bool spin>
-[[gnu::always_inline]] inline Columns of_spheres(const SphereArrays& spheres,
-                                                 const ContactArrays& contacts, std::size_t at) {
+[[gnu::always_inline]] inline BlockData sphere_data(const SphereArrays& spheres,
+                                                    const ContactArrays& contacts, std::size_t at) {
   constexpr std::uint32_t per_row = 8 / n_lanes;
-  Columns out;
+  BlockData out;
   for (std::uint32_t p = 0; p < n_parts; ++p, at += n_lanes) {
     Lanes m[8];
     for (std::uint32_t lane = 0; lane < n_lanes; ++lane) {
-      const double* a = spheres.rows[contacts.first[at + lane]].of;
+      const double* a = numbers_of(spheres.rows[contacts.first[at + lane]]);
       for (std::uint32_t k = 0; k < per_row; ++k) m[lane * per_row + k] = lanes_at(a + k * n_lanes);
-      if constexpr (spin) out.spin_z.part[p][lane] = spheres.spin_z[contacts.first[at + lane]];
+      if constexpr (spin) out.spin.z.part[p][lane] = spheres.spin_z[contacts.first[at + lane]];
     }
-    rows_to_columns(m);
-    for (std::uint32_t k = 0; k < 8; ++k) out.of[k].part[p] = m[k];
+    set_components(out, p, m);
   }
   return out;
 }
 
-// Returns true if there was work.
-template <class Law, class At>
-[[gnu::always_inline]] inline bool act(const At& meeting, const ContactArrays& contacts,
-                                       std::size_t at, const LawConstants& constants,
-                                       double share) {
+// Writes the actions of a block of contacts by the law. Returns false if the block is idle: no
+// contact touches or remembers.
+template <class Law, class AnyMeeting>
+[[gnu::always_inline]] inline bool apply_law(const AnyMeeting& meeting,
+                                             const ContactArrays& contacts, std::size_t at,
+                                             const LawConstants& constants, double share) {
   Law law;
   read_history(law, contacts, at);
   if (!law.is_at_work(meeting)) {
@@ -127,8 +163,8 @@ template <bool several>
   for (std::size_t k = at; k < at + wide_size; k += 4) {
     Half m[4];
     for (std::size_t l = 0; l < 4; ++l)
-      m[l] = half_at(spheres.rows[contacts.first[k + l]].of) -
-             half_at(spheres.rows[contacts.second[k + l]].of);
+      m[l] = half_at(numbers_of(spheres.rows[contacts.first[k + l]])) -
+             half_at(numbers_of(spheres.rows[contacts.second[k + l]]));
     const Half a = __builtin_shufflevector(m[0], m[1], 0, 4, 2, 6);  // x0 x1 z0 z1
     const Half b = __builtin_shufflevector(m[2], m[3], 0, 4, 2, 6);
     const Half c = __builtin_shufflevector(m[0], m[1], 1, 5, 3, 7);
@@ -186,14 +222,15 @@ void pairs(const ContactArrays& contacts, const SphereArrays& spheres,
   Wide deepest = *contacts.deepest;
   for (std::size_t at = 0; at < contacts.n; at += wide_size) {
     if (contacts.idle[at] != 0) continue;
-    const Columns m = of_pairs<Law::has_spin>(spheres, contacts, at);
-    const Vector3<Wide> between = {m.of[0] - Wide::at(contacts.shift[0] + at),
-                                   m.of[1] - Wide::at(contacts.shift[1] + at), m.of[2]};
+    const BlockData block = pair_data<Law::has_spin>(spheres, contacts, at);
+    const Vector3<Wide> between = {block.position.x - Wide::at(contacts.shift[0] + at),
+                                   block.position.y - Wide::at(contacts.shift[1] + at),
+                                   block.position.z};
     const Wide distance = square_root(dot(between, between));
     MeetingOf<several> meeting;
     meeting.normal = scaled(1.0 / distance, between);
-    meeting.velocity = {m.of[4], m.of[5], m.of[6]};
-    if constexpr (Law::has_spin) meeting.spin = {m.of[3], m.of[7], m.spin_z};
+    meeting.velocity = block.velocity;
+    if constexpr (Law::has_spin) meeting.spin = block.spin;
     if constexpr (several) {
       read_sizes<Law>(meeting, contacts, at);
       meeting.overlap = Wide::at(contacts.size[touching_distance] + at) - distance;
@@ -207,7 +244,7 @@ void pairs(const ContactArrays& contacts, const SphereArrays& spheres,
         meeting.arm = scaled(Wide(0.5), Law::arm_is_radius ? meeting.normal : between);
       deepest = greater(deepest, meeting.overlap);
     }
-    set_idle(contacts, at, !act<Law>(meeting, contacts, at, constants, 0.5));
+    set_idle(contacts, at, !apply_law<Law>(meeting, contacts, at, constants, 0.5));
   }
   keep_deepest(contacts, deepest);
 }
@@ -218,7 +255,7 @@ void sides(const ContactArrays& contacts, const SphereArrays& spheres,
   using Law = LawOf<Wide, friction>;
   Wide deepest = *contacts.deepest;
   for (std::size_t at = 0; at < contacts.n; at += wide_size) {
-    const Columns m = of_spheres<Law::has_spin>(spheres, contacts, at);
+    const BlockData block = sphere_data<Law::has_spin>(spheres, contacts, at);
     const Wide distance = Wide::at(contacts.side[3] + at);
     MeetingOf<several> meeting;
     meeting.normal = {Wide::at(contacts.side[0] + at), Wide::at(contacts.side[1] + at),
@@ -229,7 +266,8 @@ void sides(const ContactArrays& contacts, const SphereArrays& spheres,
     } else {
       meeting.overlap = 0.5 - distance;
     }
-    meeting.velocity = {m.of[4], m.of[5], m.of[6] - contacts.side_velocity};
+    meeting.velocity = {block.velocity.x, block.velocity.y,
+                        block.velocity.z - contacts.side_velocity};
     if constexpr (Law::has_spin) {
       if constexpr (several) {
         meeting.arm = Law::arm_is_radius
@@ -238,23 +276,24 @@ void sides(const ContactArrays& contacts, const SphereArrays& spheres,
       } else {
         meeting.arm = scaled(Law::arm_is_radius ? Wide(0.5) : distance, meeting.normal);
       }
-      meeting.spin = {m.of[3], m.of[7], m.spin_z};
+      meeting.spin = block.spin;
     }
     if constexpr (several) {
       deepest = greater(deepest, meeting.overlap * meeting.per_diameter);
     } else {
       deepest = greater(deepest, meeting.overlap);
     }
-    act<Law>(meeting, contacts, at, constants, 1.0);
+    apply_law<Law>(meeting, contacts, at, constants, 1.0);
   }
   keep_deepest(contacts, deepest);
 }
 
-// A leap-frog step: every sphere sums what acts on it in the order of its slots; velocities, half a
-// step back, go a step on, and then the positions. Moment of inertia 1/10; of several sizes 2/5 of
-// mass and radius squared.
+// A leap-frog step (grain_loop.hpp, 4): every sphere sums the actions of its contacts in the order
+// of its slots; velocities, half a step back, go a step on, and then the positions. Moment of
+// inertia 1/10; of several sizes 2/5 of mass and radius squared.
 template <bool spin, bool full_step, bool all, bool several>
-[[gnu::always_inline]] inline void advance_those(const SphereArrays& spheres, Advance& step) {
+[[gnu::always_inline]] inline void advance_spheres(const SphereArrays& spheres, Advance& step) {
+  // The first half of an action, on the first sphere and on the second.
   constexpr Half sign_of[2] = {{1, 1, 1, 1}, {-1, -1, -1, 1}};
   const double dt = step.time_step;
   double turn = (several ? 2.5 : 10) * dt;
@@ -272,20 +311,20 @@ template <bool spin, bool full_step, bool all, bool several>
       twist = per_mass * twist_of_1;
       turn = per_mass * turn_of_1;
     }
-    Half force = weight, rest = {};
+    Half force = weight, rest = {};  // the two halves of the sum of actions
     if (all || spheres.acted_upon[i] != 0) {
       for (std::uint32_t s = spheres.begin[i]; s < spheres.begin[i + 1]; ++s) {
         const std::uint32_t slot = spheres.slot[s];
-        const double* action = spheres.action[slot >> 1].of;
+        const double* action = numbers_of(spheres.action[slot >> 1]);
         force += sign_of[slot & 1] * half_at(action);
         rest += half_at(action + 4);
       }
-      spheres.dissipated[2 * i] += rest[0];
-      spheres.dissipated[2 * i + 1] += rest[1];
+      spheres.dissipated[2 * i] += rest[friction_place];
+      spheres.dissipated[2 * i + 1] += rest[normal_place];
     }
     const Half kicked = force * kick, twisted = rest * twist;
-    double* row = spheres.rows[i].of;
-    double* moving = full_step ? spheres.half_rows[i].of : row;
+    double* row = numbers_of(spheres.rows[i]);
+    double* moving = full_step ? numbers_of(spheres.half_rows[i]) : row;
     half_at(moving + 4) += kicked;
     half_at(moving) += twisted;
     const Half velocity = half_at(moving + 4);
@@ -298,7 +337,7 @@ template <bool spin, bool full_step, bool all, bool several>
       half_at(row) = moved;
     }
     if constexpr (spin) {
-      const double turned = turn * rest[2];
+      const double turned = turn * rest[torque_z_place];
       if constexpr (full_step) {
         spheres.half_spin_z[i] += turned;
         spheres.spin_z[i] = spheres.half_spin_z[i] + 0.5 * turned;
@@ -306,7 +345,7 @@ template <bool spin, bool full_step, bool all, bool several>
         spheres.spin_z[i] += turned;
       }
     }
-    const Half apart = velocity - drift, squares = apart * apart;
+    const Half relative = velocity - drift, squares = relative * relative;
     const double speed_squared = squares[0] + squares[1] + squares[2];
     fastest = speed_squared > fastest ? speed_squared : fastest;
   }
@@ -316,9 +355,9 @@ template <bool spin, bool full_step, bool all, bool several>
 template <bool spin, bool full_step, bool several>
 void advance(const SphereArrays& spheres, Advance& step) {
   if (spheres.acted_upon == nullptr) {
-    advance_those<spin, full_step, true, several>(spheres, step);
+    advance_spheres<spin, full_step, true, several>(spheres, step);
   } else {
-    advance_those<spin, full_step, false, several>(spheres, step);
+    advance_spheres<spin, full_step, false, several>(spheres, step);
   }
 }
 

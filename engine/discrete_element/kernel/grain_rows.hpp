@@ -11,13 +11,22 @@
 // Input and output of the kernels, as plain arrays. Units as in contact_law.hpp.
 namespace jostle::inline engine {
 
-/// One cache line, in two halves, so that what changes what has the same place in its half. A row
-/// of a sphere: x, y, z, spin x; velocity, spin y. A row of a contact: force on its first sphere,
-/// torque y on each; energy dissipated by friction and normally, halved where two spheres share it,
-/// torque z, torque x. For spheres of several sizes spins are radius x angular velocity, and
-/// torques are divided by the radius, which makes them equal for both spheres.
-struct alignas(64) Row {
-  double of[8] = {};
+/// A sphere that moves, in one cache line of two halves: position and velocity, each with a
+/// component of the spin; spin z is in an array of its own. For spheres of several sizes spins are
+/// radius x angular velocity.
+struct alignas(64) SphereRow {
+  double x = 0, y = 0, z = 0, spin_x = 0;
+  double velocity_x = 0, velocity_y = 0, velocity_z = 0, spin_y = 0;
+};
+
+/// The action of a contact in a step, in one cache line: force on its first sphere (the opposite
+/// acts on the second), torque on each of the two, and dissipated energies, halved where two
+/// spheres share them. For spheres of several sizes torques are divided by the radius, which makes
+/// them equal for both spheres. A component has the place, in its half, of the component of a
+/// SphereRow that it changes: a step then adds whole halves.
+struct alignas(64) ActionRow {
+  double force_x = 0, force_y = 0, force_z = 0, torque_y = 0;
+  double dissipated_by_friction = 0, dissipated_normally = 0, torque_z = 0, torque_x = 0;
 };
 
 /// A vector whose elements begin at a cache line, as kernels load them.
@@ -52,7 +61,7 @@ struct ContactArrays {
   std::array<const double*, 4> side{};                // plane of sides: normal, distance
   std::array<const double*, n_contact_sizes> size{};  // data of several sizes, by ContactSize
   std::array<double*, most_history> history{};
-  Row* action = nullptr;
+  ActionRow* action = nullptr;
   // Flags of pairs: in every fourth 1 if the kernel's block has neither history nor action.
   std::uint8_t* idle = nullptr;
   double side_velocity = 0;   // velocity of the floor, upwards
@@ -62,15 +71,15 @@ struct ContactArrays {
 /// The spheres, [n_spheres + 2]: the last two touch nothing.
 struct SphereArrays {
   std::size_t n = 0;
-  Row* rows = nullptr;
+  SphereRow* rows = nullptr;
   double* spin_z = nullptr;
-  Row* half_rows =
-      nullptr;  // rows for laws that use full steps: velocity and spin half a step before
+  // Rows for laws that use full steps: velocity and spin half a step before.
+  SphereRow* half_rows = nullptr;
   double* half_spin_z = nullptr;
   double* dissipated = nullptr;          // [n][2] by friction, normally
   const std::uint32_t* begin = nullptr;  // [n + 1], of `slot`
   const std::uint32_t* slot = nullptr;   // contact x 2, plus 1 for the second sphere
-  const Row* action = nullptr;
+  const ActionRow* action = nullptr;
   const double* mass = nullptr;              // mass for several sizes: [n]
   const double* per_mass = nullptr;          // 1 / mass for several sizes: [n]
   const std::uint8_t* acted_upon = nullptr;  // [n] 0 where all actions are 0; null: not known

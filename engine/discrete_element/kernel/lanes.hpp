@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "engine/discrete_element/kernel/lane_operations.hpp"
+#include "engine/discrete_element/kernel/vector3.hpp"
 
 // Numbers for as many contacts as vectors have room for. Only sources that are compiled once for
 // every instruction set include it; it differs between them, so it is in the namespace of each
