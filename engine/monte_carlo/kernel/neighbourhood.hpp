@@ -130,7 +130,8 @@ class NeighbourhoodView {
   using Index = std::uint32_t;
   using Cache = BlockerCacheOf<Spheres>;
 
-  explicit NeighbourhoodView(Neighbourhood<Box, Spheres>& all) : all_(all), box_(all.packed_box_) {
+  explicit NeighbourhoodView(Neighbourhood<Box, Spheres>& neighbourhood)
+      : neighbourhood_(neighbourhood), box_(neighbourhood.packed_box_) {
     refresh();
   }
   NeighbourhoodView(const NeighbourhoodView&) = delete;
@@ -185,11 +186,11 @@ class NeighbourhoodView {
   [[gnu::always_inline]] const Index* row(Index i) const { return rows_[i]; }
 
   void refresh() {
-    centres_ = all_.centres_.data();
-    rows_ = all_.lists_.rows_place();
-    caches_ = all_.caches_.data();
-    origins_ = all_.lists_.origins();
-    half_skin_squared_ = all_.lists_.half_skin_squared();
+    centres_ = neighbourhood_.centres_.data();
+    rows_ = neighbourhood_.lists_.rows_place();
+    caches_ = neighbourhood_.caches_.data();
+    origins_ = neighbourhood_.lists_.origins();
+    half_skin_squared_ = neighbourhood_.lists_.half_skin_squared();
   }
 
   [[gnu::always_inline]] bool touches(const PackedCentre& r, const PackedCentre& other) const {
@@ -215,7 +216,8 @@ class NeighbourhoodView {
     for (Index place = shown; place < near[0]; ++place) {
       ++distance_tests_;
       if (touches(r, centres_[near[1 + place]])) {
-        all_.caches_.promote(box_, all_.centres_, all_.lists_, i, place);
+        neighbourhood_.caches_.promote(box_, neighbourhood_.centres_, neighbourhood_.lists_, i,
+                                       place);
         return true;
       }
     }
@@ -223,7 +225,7 @@ class NeighbourhoodView {
   }
 
   [[gnu::noinline]] bool free_by_new_list(Index i, const PackedCentre& r) {
-    all_.template renew<caching>(i);
+    neighbourhood_.template renew<caching>(i);
     refresh();
     if (!blocked_by_first(i, r, *row(i))) return true;
     if constexpr (caching == BlockerCaching::on) follow(i);
@@ -231,10 +233,10 @@ class NeighbourhoodView {
   }
 
   [[gnu::always_inline]] void follow(Index i) {
-    all_.caches_.follow(box_, all_.centres_, all_.lists_, i);
+    neighbourhood_.caches_.follow(box_, neighbourhood_.centres_, neighbourhood_.lists_, i);
   }
 
-  Neighbourhood<Box, Spheres>& all_;
+  Neighbourhood<Box, Spheres>& neighbourhood_;
   PackedBox<Box, Spheres> box_;
   PackedCentre* centres_;
   typename Neighbourhood<Box, Spheres>::Lists::Rows::Place rows_;

@@ -15,9 +15,20 @@
 
 namespace jostle::inline engine {
 
-/// The trial loop of one container and one move, for equal spheres or several sizes. One trial is:
-/// propose, wrap, test floor and sides, test the neighbours, accept or reject. Everything else
-/// happens once a batch or more rarely.
+/// The trial loop of one container and one move, for equal spheres or several sizes: the Metropolis
+/// algorithm for hard spheres in gravity (Metropolis et al., J. Chem. Phys. 21, 1087 (1953)); the
+/// polar move is that of Philippe & Bideau 2001, sec. II. A trial of sphere i at r is
+///
+///   1. r' = r + d, wrapped; i and d are drawn from (key, number of the trial)  proposals.hpp
+///   2. rejected if r' is nearer to floor or sides than its radius              packed_geometry.hpp
+///   3. rejected if |r' - r_j| < R_i + R_j for a neighbour j                    neighbourhood.hpp
+///   4. if z' > z, accepted with probability exp(-beta m g (z' - z))            move_policies.hpp
+///   5. r = r' if accepted
+///
+/// Everything else happens once per batch of trials or more rarely: lists and caches are made, the
+/// step adapts. Invariants: no two spheres overlap and none lies beyond floor or sides; the
+/// trajectory is a function of the start and the key alone, whatever lists, caches and batches
+/// hold.
 template <class Box, MovePolicy Policy, class Spheres = EqualSpheres>
 class TypedTrialLoop final : public TrialLoop {
  public:
@@ -128,58 +139,59 @@ class TypedTrialLoop final : public TrialLoop {
   // One trial after another; `begin` is the trial of the batch that state_ reached.
   [[gnu::noinline]] void run_one_by_one(std::uint32_t begin, TrialRange range,
                                         TrialCounts& counts) {
-    auto here = neighbourhood_.template view<BlockerCaching::off>(move_.reach(state_.step));
+    auto view = neighbourhood_.template view<BlockerCaching::off>(move_.reach(state_.step));
     const double unit = move_.unit(state_.step);
     for (std::uint32_t k = range.first; k < range.last; ++k) {
-      here.fetch_list(batch_.sphere[move_.trial(k + ProposalBatch::margin)]);
+      view.fetch_list(batch_.sphere[move_.trial(k + ProposalBatch::margin)]);
       const std::uint32_t t = move_.trial(k);
       const std::uint32_t i = batch_.sphere[t];
       const bool rises = move_.rises(batch_.dz[t]);
       counts.rising += rises;
-      const PackedCentre target = target_of(here, t, unit);
-      if (here.rejects(i, target)) continue;
+      const PackedCentre target = target_of(view, t, unit);
+      if (view.rejects(i, target)) continue;
       if (rises) {
         const std::uint64_t trial = state_.next_trial + (t - begin);
         if (!move_.accepts_rise(trial, cost_of_rise(i, unit * batch_.dz[t]))) continue;
       }
-      const bool moved = here.move(i, target);
+      const bool moved = view.move(i, target);
       counts.accepted += moved;
       counts.accepted_rising += moved && rises;
     }
-    tally_.distance_tests += here.distance_tests();
+    tally_.distance_tests += view.distance_tests();
   }
 
-  // Like run_each(), where fewer trials are accepted: a group of trials is first tested against the
-  // caches, without branches, and only those that pass are looked at closely; where memory is far
-  // and hardly any is accepted, two groups later, when what that takes has been fetched. An
-  // accepted trial invalidates the later candidates: it moves a sphere or renews a list.
+  // Like run_one_by_one(), where fewer trials are accepted: a group of trials is first tested
+  // against the caches, without branches, and only those that pass are looked at closely; where
+  // memory is far and hardly any is accepted, two groups later, when what that takes has been
+  // fetched. An accepted trial invalidates the later candidates: it moves a sphere or renews a
+  // list.
   [[gnu::noinline]] void run_groups(TrialRange range, TrialCounts& counts) {
     std::array<std::uint32_t, 4 * group> open;
     std::uint32_t n_open = 0, n_fetched = 0;
-    auto here = neighbourhood_.template view<BlockerCaching::on>(move_.reach(state_.step));
+    auto view = neighbourhood_.template view<BlockerCaching::on>(move_.reach(state_.step));
     const double unit = move_.unit(state_.step);
     const bool wait = caching_.hardly_any_accepted() && n_spheres() > many_spheres;
     for (std::uint32_t k = range.first; k < range.last || n_open > 0;) {
       const std::uint32_t known = n_open, end = std::min(k + group, range.last);
       tally_.distance_tests += BlockerCache::size * (end - k);
       for (; k < end; ++k) {
-        here.fetch_cache(batch_.sphere[move_.trial(k + ProposalBatch::margin)]);
+        view.fetch_cache(batch_.sphere[move_.trial(k + ProposalBatch::margin)]);
         open[n_open] = k;
-        n_open += !certainly_rejects(here, move_.trial(k), unit);
+        n_open += !certainly_rejects(view, move_.trial(k), unit);
       }
       std::uint32_t due = n_open;
       if (wait) {
         if (k < range.last) due = n_fetched;
         for (std::uint32_t s = n_fetched; s < known; ++s) {
-          here.fetch_neighbours(batch_.sphere[move_.trial(open[s])]);
+          view.fetch_neighbours(batch_.sphere[move_.trial(open[s])]);
         }
         for (std::uint32_t s = known; s < n_open; ++s) {
-          here.fetch_list(batch_.sphere[move_.trial(open[s])]);
+          view.fetch_list(batch_.sphere[move_.trial(open[s])]);
         }
         n_fetched = known;
       }
       std::uint32_t s = 0;
-      while (s < due && !passes(here, move_.trial(open[s]), unit, counts)) ++s;
+      while (s < due && !moves_if_free(view, move_.trial(open[s]), unit, counts)) ++s;
       if (s < due) {
         k = open[s] + 1;
         n_open = n_fetched = 0;
@@ -189,32 +201,32 @@ class TypedTrialLoop final : public TrialLoop {
         n_fetched -= std::min(n_fetched, due);
       }
     }
-    tally_.distance_tests += here.distance_tests();
+    tally_.distance_tests += view.distance_tests();
   }
 
-  // A trial that its cache lets pass. True if no neighbour rejects it: it is then accepted, or a
-  // new list shows what does.
+  // Decides a trial that its cache lets pass. Returns true if no neighbour of the list rejects it:
+  // it is then accepted, or a new list shows what rejects it.
   template <class View>
-  [[gnu::always_inline]] bool passes(View& here, std::uint32_t t, double unit,
-                                     TrialCounts& counts) {
+  [[gnu::always_inline]] bool moves_if_free(View& view, std::uint32_t t, double unit,
+                                            TrialCounts& counts) {
     const std::uint32_t i = batch_.sphere[t];
-    const PackedCentre target = target_of(here, t, unit);
-    if (here.rejects(i, target)) return false;
-    counts.accepted += here.move(i, target);
+    const PackedCentre target = target_of(view, t, unit);
+    if (view.rejects(i, target)) return false;
+    counts.accepted += view.move(i, target);
     return true;
   }
 
   template <class View>
-  [[gnu::always_inline]] bool certainly_rejects(const View& here, std::uint32_t t,
+  [[gnu::always_inline]] bool certainly_rejects(const View& view, std::uint32_t t,
                                                 double unit) const {
-    return here.certainly_rejects(batch_.sphere[t], unit * batch_.dx[t], unit * batch_.dy[t],
+    return view.certainly_rejects(batch_.sphere[t], unit * batch_.dx[t], unit * batch_.dy[t],
                                   unit * batch_.dz[t]);
   }
 
   template <class View>
-  [[gnu::always_inline]] PackedCentre target_of(const View& here, std::uint32_t t,
+  [[gnu::always_inline]] PackedCentre target_of(const View& view, std::uint32_t t,
                                                 double unit) const {
-    return here.target(batch_.sphere[t], unit * Pair{batch_.dx[t], batch_.dy[t]},
+    return view.target(batch_.sphere[t], unit * Pair{batch_.dx[t], batch_.dy[t]},
                        unit * batch_.dz[t]);
   }
 
