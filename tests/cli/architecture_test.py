@@ -132,6 +132,17 @@ class Architecture(unittest.TestCase):
         except graphlib.CycleError as error:
             self.fail("circle: " + " -> ".join(".".join(module) for module in error.args[1]))
 
+    def test_folders_and_files_keep_their_size(self):
+        """About twenty sources and about 400 lines: what a reader can survey."""
+        folders, files = {}, {}
+        for folder in MAY_INCLUDE:
+            for path in (SOURCE / folder).rglob("*.[ch]pp"):
+                room = str(path.parent.relative_to(SOURCE))
+                folders[room] = folders.get(room, 0) + 1
+                files[str(path.relative_to(SOURCE))] = path.read_text().count("\n")
+        self.assertEqual({folder: n for folder, n in folders.items() if n > 22}, {})
+        self.assertEqual({file: n for file, n in files.items() if n > 420}, {})
+
     def test_every_type_is_defined_once(self):
         """Two of one name would be one to the linker, which takes either."""
         types = types_by_name()

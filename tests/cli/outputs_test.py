@@ -192,7 +192,6 @@ class Sources(Case):
         "results/locks/lock.cpp": LOOKS,
         "results/disk/output_path.cpp": "is what looks",
         "results/run/run_parts.cpp": LOOKS,
-        "results/disk/scratch_folder.cpp": LOOKS,
         "results/disk/seal.cpp": "a TemporaryFile, which is there",
         "results/disk/temporary_file.cpp": LOOKS,
         "results/hdf5/child_process.cpp": "/dev/null",
