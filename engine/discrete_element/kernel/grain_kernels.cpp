@@ -66,7 +66,7 @@ template <class Law>
   for (std::uint32_t p = 0; p < n_parts; ++p) {
     Lanes m[8] = {action.force.x.part[p],  action.force.y.part[p], action.force.z.part[p],
                   action.torque.y.part[p], friction.part[p],       normal.part[p],
-                  action.torque.z.part[p], action.torque.x.part[p]};  // as an ActionRow
+                  action.torque.z.part[p], action.torque.x.part[p]};  // order of an ActionRow
     columns_to_rows(m);
     double* rows = numbers_of(contacts.action[at + p * n_lanes]);
     for (std::uint32_t k = 0; k < 8; ++k) lanes_at(rows + k * n_lanes) = m[k];
