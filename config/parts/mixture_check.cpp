@@ -4,7 +4,6 @@
 
 #include "config/parts/parts.hpp"
 #include "engine/bed/boundary.hpp"
-#include "engine/monte_carlo/trial_loop.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 #include "structure/order/partial_correlation.hpp"
 
@@ -68,9 +67,6 @@ class MixtureCheck {
            finite_text("{} diameters is out of range: with spheres of {:.6g} a step must not "
                        "exceed {:.6g}, twice their diameter",
                        step, range_.least, 2 * range_.least));
-    if (sound(faults_, "/container"))
-      note_if(place + "/sampler",
-              sampler_fault(relax.sampler, relax.move, scene_.container, SphereSizes::several));
   }
 
   void note(std::string pointer, std::string message) {

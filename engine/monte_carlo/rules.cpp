@@ -11,14 +11,13 @@ std::optional<std::string> move_fault(const Move& move, const Container& contain
 }
 
 std::optional<std::string> sampler_fault(Sampler sampler, const Move& move,
-                                         const Container& container, SphereSizes sizes) {
+                                         const Container& container) {
   static_assert(std::variant_size_v<Move> == 2, "add the samplers that suit the new move here");
   if (sampler == Sampler::exhaustive) return std::nullopt;
   std::string why;
   const auto add = [&](const char* reason) {
     why += (why.empty() ? "" : "; ") + std::string(reason);
   };
-  if (sizes == SphereSizes::several) add("skipping needs equal spheres, and this is a mixture");
   if (!has_gravity(container)) {
     add("skipping needs trials that only fall, and without gravity (fully_periodic) none does");
   }

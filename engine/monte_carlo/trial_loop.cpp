@@ -10,7 +10,7 @@ std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Mov
                                            StreamKey key, InstructionSet set, Sampler sampler,
                                            SphereSizes sizes) {
   if (const auto fault = move_fault(move, container)) throw std::invalid_argument(*fault);
-  if (const auto fault = sampler_fault(sampler, move, container, sizes)) {
+  if (const auto fault = sampler_fault(sampler, move, container)) {
     throw std::invalid_argument(*fault);
   }
   const Kernels kernels = kernels_for(set);

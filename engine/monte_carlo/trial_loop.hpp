@@ -93,11 +93,10 @@ class TrialLoop {
 std::optional<std::string> move_fault(const Move& move, const Container& container);
 
 /// Why the sampler does not suit the move in the container; nothing if it does. The rejection-free
-/// sampler needs equal spheres and trials that never rise: gravity, and of the Metropolis move
-/// beta = infinity and an adaptation that counts all trials.
+/// sampler needs trials that never rise: gravity, and of the Metropolis move beta = infinity and an
+/// adaptation that counts all trials.
 std::optional<std::string> sampler_fault(Sampler sampler, const Move& move,
-                                         const Container& container,
-                                         SphereSizes sizes = SphereSizes::equal);
+                                         const Container& container);
 
 /// Chooses the loop for a container and a move. `key` is the stream of Purpose::trials. A loop for
 /// several sizes takes equal spheres too, and then makes the same trajectory as the other.

@@ -247,7 +247,6 @@ class Mixtures(Case):
     def test_what_a_file_of_sizes_does_not_go_with_is_refused_when_the_scene_is_read(self):
         for changes, says in (({"observe": ["corrected_fraction"]}, "/observe/0: corrected_fraction"),
                               ({"container": {"sides": "periodic", "width": 5}}, "must exceed 5"),
-                              ({"relax": {"polar": {}, "sampler": "skipping"}}, "/relax/sampler"),
                               ({"observe": [{"kind_height": {"kind": "larg"}}]}, 'named "larg"')):
             for spheres in (KINDS, 73):
                 self.write(changed(SCENE, spheres=spheres, **changes))

@@ -75,7 +75,6 @@ const std::vector<std::string> cross_field_messages{
     "is that of two kinds of spheres",
     "is defined for equal spheres alone",
     "equal spheres of diameter 1",
-    "skipping needs equal spheres",
     "are defined for equal spheres: leave them out",
     "partial g(r)",
     "a lag is at least 1 tap",

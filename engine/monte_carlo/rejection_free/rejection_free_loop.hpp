@@ -11,14 +11,26 @@
 
 namespace jostle::inline engine {
 
-/// Rejection-free sampling: the loop that looks only at candidates, the trials that the bounds do
-/// not certainly reject. The number of trials up to the next candidate is geometric, so the law of
-/// the trajectory, counts of trials included, is that of the exhaustive loop; the random numbers
-/// are others. This is the n-fold way (Bortz, Kalos & Lebowitz 1975,
-/// doi:10.1016/0021-9991(75)90060-1) with bounds in place of exact probabilities; a candidate that
-/// the exact test rejects thins the process to the required law (Lewis & Shedler 1979,
-/// doi:10.1002/nav.3800260304). Used while few trials are accepted; otherwise, as after a tap, the
-/// loop is exhaustive.
+/// Rejection-free sampling of a relaxation (Philippe & Bideau 2001, sec. II; Rosato et al. 2010,
+/// sec. II, at zero temperature): the loop that looks only at candidates, the trials that bounds do
+/// not certainly reject.
+///
+/// A trial of the exhaustive loop takes a random sphere i of n and a random step: its direction
+/// falls into a bin b with probability w_b, its length l is at most L. Every sphere and bin has a
+/// bound L_ib, beyond which each step is rejected (BoundTables; rejection_free_kernels.cpp derives
+/// it). A trial with l <= L_ib is a candidate. While nothing moves trials are independent, and one
+/// is a candidate with probability
+///   P = (1 / n) sum_ib w_b F(L_ib / L),  F(x) = x of polar steps, x^3 of steps in a cube.
+/// Hence k trials pass before the next candidate with probability P (1 - P)^k: one random number
+/// advances over all of them. Its sphere and bin are drawn with probabilities proportional to
+/// w_b F(L_ib / L), its direction within the bin and its length within the bound by the law of the
+/// move. Then it is tested exactly, as every trial is. The law of the trajectory, counts of trials
+/// included, is that of the exhaustive loop; the random numbers are others.
+///
+/// This is the n-fold way (Bortz, Kalos & Lebowitz 1975, doi:10.1016/0021-9991(75)90060-1) with
+/// bounds in place of exact probabilities; a candidate that the exact test rejects thins the
+/// process to the required law (Lewis & Shedler 1979, doi:10.1002/nav.3800260304). Used while few
+/// trials are accepted; otherwise, as after a tap, the loop is exhaustive.
 template <class Box, class Directions, class Spheres = EqualSpheres>
 class RejectionFreeLoop final : public TrialLoop {
   using Policy = typename Directions::Policy;
