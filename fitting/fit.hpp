@@ -132,6 +132,9 @@ struct Fit {
   double reduced_chi2 = 0;   // residual_sum / dof; infinite without dof
   double r2 = 0;             // 1 - residual_sum / weighted sum about the weighted mean
   double condition = 0;      // condition of J^T J for columns of J of unit length
+  /// Ratio of errors by the scatter around the law to those by the errors given, which are taken as
+  /// exact; 1 where chi2 is not significantly above 1, or errors come from elsewhere.
+  double scatter_ratio = 1;
   RunsTest runs;             // runs of the residuals in order of t
   double weighted_size = 0;  // points of equal weight that would weigh as much: (sum w)^2 / sum w^2
   Memory memory;             // memory of the residuals; not sought with realizations

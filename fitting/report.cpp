@@ -92,6 +92,12 @@ double largest_error(const Fit& fit) {
   return largest;
 }
 
+// ", taken as exact; by the scatter around the law they are 2.1 times longer"
+std::string scatter_text(const Fit& fit) {
+  return ", taken as exact; by the scatter around the law they are " +
+         number(fit.scatter_ratio, 2) + " times longer";
+}
+
 // The source of the errors.
 std::string basis_of_errors(const Fit& fit) {
   std::ostringstream text;
@@ -107,6 +113,7 @@ std::string basis_of_errors(const Fit& fit) {
   } else {
     text << (fit.sigma_given ? "the errors given" : "the scatter about the law");
   }
+  if (fit.scatter_ratio > 1) text << scatter_text(fit);
   if (fit.error_dof < 100) {
     text << ", Student's t of " << number(std::max(fit.error_dof, 0.0), 3)
          << (fit.error_dof == 1 ? " degree of freedom" : " degrees of freedom");
@@ -134,7 +141,7 @@ bool all_identified(const Fit& fit) {
 }
 
 /// "X_inf, tau identified; B wide".
-std::string what_is_identified(const Fit& fit) {
+std::string listed_verdicts(const Fit& fit) {
   if (all_identified(fit)) return "all parameters identified";
   std::map<Identifiability, std::string> names;
   for (const Estimate& estimate : fit.estimates) {
@@ -146,6 +153,12 @@ std::string what_is_identified(const Fit& fit) {
     text += (text.empty() ? "" : "; ") + listed + " " + verdict_text(what);
   }
   return text;
+}
+
+/// Adds the basis of the verdicts where the curve contradicts the errors given.
+std::string what_is_identified(const Fit& fit) {
+  const std::string listed = listed_verdicts(fit);
+  return fit.scatter_ratio > 1 ? listed + ", from the errors given" + scatter_text(fit) : listed;
 }
 
 // Laws that draw this curves are one law: the first of them competes.

@@ -126,6 +126,7 @@ Json fit_json(const FitOutcome& outcome) {
                  {"logarithmic", fit.logarithmic},
                  {"residual_sum", number(fit.residual_sum)},
                  {"reduced_chi2", number(fit.reduced_chi2)},
+                 {"scatter_ratio", number(fit.scatter_ratio)},
                  {"r2", number(fit.r2)},
                  {"condition", number(fit.condition)},
                  {"runs", fit.runs.runs},

@@ -116,7 +116,9 @@ MemoryErrors memory_errors(const std::vector<double>& t, const Eigen::MatrixXd& 
   const double share = std::min(memory.variance / unit, sigma_given ? 1.0 : infinite);
   Eigen::MatrixXd scatter = share * found.basis.transpose() * correlated(t, memory, found.basis);
   const double dof = memory.effective_size - static_cast<double>(jacobian.cols());
-  if (sigma_given && !(scatter.diagonal().maxCoeff() > 1)) {
+  // Without a memory the scatter is the identity but for rounding, which must not decide.
+  const bool longer = memory.time > 0 && scatter.diagonal().maxCoeff() > 1;
+  if (sigma_given && !longer) {
     scatter.setIdentity();
     memory = {.variance = memory.variance, .effective_size = static_cast<double>(t.size())};
     return {errors_of(found, scatter, identity(found), 1, infinite), memory};

@@ -54,7 +54,8 @@ double level_weight(const std::vector<double>& weights, const Eigen::MatrixXd& j
 /// degrees of freedom, which may be negative where the memory is as long as the curve. t:
 /// [n_points], ascending; jacobian, residuals: [n_points], weighted alike. `sigma_given`: the
 /// variance of a residual is 1, and only their correlation is taken from them, where they are no
-/// smaller. `evidence`: of residual_memory().
+/// smaller. Without a memory that makes errors longer, given errors are known: dof is infinite.
+/// `evidence`: of residual_memory().
 struct MemoryErrors : DependentErrors {
   Memory memory;
 };

@@ -167,8 +167,14 @@ void remark_on_chi2(Fit& fit) {
   text.precision(3);
   text << "Reduced chi2 is " << fit.reduced_chi2 << ", far from 1 (p < 0.001 for "
        << fit.effective_size << " independent points): ";
-  if (z > 0) {
+  if (z > 0 && (fit.n_realizations > 0 || too_short_for_errors(fit))) {
     text << "the law misses the curve, or its errors are too small.";
+  } else if (z > 0) {
+    const double variance = fit.memory.time > 0 ? fit.memory.variance : fit.reduced_chi2;
+    fit.scatter_ratio = std::max(1.0, std::sqrt(variance));
+    text << "the law misses the curve, or the errors given are too small. Intervals take them as "
+            "exact; by the scatter around the law they are "
+         << fit.scatter_ratio << " times longer.";
   } else if (fit.n_realizations > 0) {
     text << "realizations keep to values of their own, so their mean scatters less than they do. "
             "Errors and intervals count that.";
