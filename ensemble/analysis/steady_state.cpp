@@ -38,10 +38,20 @@ std::string reasons_for_doubt(const SteadyState& state) {
   return reasons;
 }
 
-// For a Gaussian process: Bartlett 1946.
-double sigma_error(const SteadyState& state) {
+// By the scatter of the variances of realizations, of one by Bartlett 1946 for a Gaussian process;
+// and by the error of the autocorrelation time, which corrects the variance. None of a lower bound.
+ErrorOf sigma_error(const SteadyState& state, const Moments& variances) {
+  const AutocorrelationTime& memory = state.autocorrelation;
+  const double dof = state.realizations == 1 ? std::numeric_limits<double>::infinity()
+                                             : static_cast<double>(state.realizations) - 1;
+  if (state.sigma == 0) return {0, dof};
+  if (!memory.found()) return {};
+  const double by_time = memory.variance_error / (2 * state.sigma);
   const auto n = static_cast<double>(state.n_taps * state.realizations);
-  return state.sigma * std::sqrt((1 + 2 * state.autocorrelation.squares) / (2 * n));
+  const double scatter = state.realizations == 1
+                             ? state.sigma * std::sqrt((1 + 2 * memory.squares) / (2 * n))
+                             : state.sigma * variances.standard_error() / (2 * variances.mean());
+  return {std::hypot(scatter, by_time), dof};
 }
 
 // For the mean of one series, by the memory that is likeliest; none where that leaves fewer than
@@ -134,9 +144,7 @@ SteadyState SteadyStateTest::result() const {
   state.realization_sigma = single ? std::numeric_limits<double>::quiet_NaN()
                                    : means_.standard_error() * std::sqrt(realizations);
   state.sigma = std::sqrt(state.autocorrelation.variance);
-  state.sigma_error = single || state.sigma == 0 ? sigma_error(state)
-                                                 : variances_.standard_error() / (2 * state.sigma);
-  state.sigma_dof = single ? std::numeric_limits<double>::infinity() : realizations - 1;
+  state.sigma_error = sigma_error(state, variances_);
   return state;
 }
 

@@ -24,8 +24,10 @@ struct SteadyState {
   /// one curve (fitting/intervals/memory.hpp); where that is as long as the taps, a lower bound
   /// without degrees of freedom.
   ErrorOf error{};
-  double sigma = 0;  // deviation of single taps about the steady value of their realization
-  double sigma_error = 0, sigma_dof = 0;  // over realizations; of one, Bartlett's, dof infinite
+  /// Deviation of single taps about the steady value of their realization; a lower bound where the
+  /// autocorrelation time is one.
+  double sigma = 0;
+  ErrorOf sigma_error{};  // over realizations; of one, Bartlett's, dof infinite; none of a bound
   double realization_sigma = 0;  // deviation of realizations' means, 1/(M - 1); NaN for one
   BlockingResult blocking;
   AutocorrelationTime autocorrelation;

@@ -75,18 +75,21 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
                                  : "lower bound of the error: blocking found no plateau",
           flyvbjerg_petersen),
       one("sigma", state.sigma, series.units,
-          "deviation of single taps about the steady value of their realization",
+          time.found() ? "deviation of single taps about the steady value of their realization"
+                       : "lower bound of the deviation of single taps about the steady value of "
+                         "their realization: the taps are too few for their memory",
           "Philippe & Bideau 2001, fig. 3"),
-      one("sigma_error", state.sigma_error, series.units, "standard error"),
-      one("sigma_dof", state.sigma_dof, "1", "degrees of freedom of sigma_error"),
+      one("sigma_error", error_or_nan(state.sigma_error), series.units, "standard error"),
+      one("sigma_dof", state.sigma_error.dof, "1", "degrees of freedom of sigma_error"),
       one("realization_sigma", state.realization_sigma, series.units,
           "deviation of the realizations' means, 1/(M - 1)"),
       one("autocorrelation_time", time.time, "taps",
           time.found() ? "integrated, 1/2 for independent taps"
                        : "lower bound: too long for this number of taps",
           wolff),
-      one("autocorrelation_time_error", time.error, "taps", "standard error", wolff),
-      one("autocorrelation_time_dof", infinite, "1", "its degrees of freedom"),
+      one("autocorrelation_time_error", time.found() ? time.error : not_a_number, "taps",
+          "standard error", wolff),
+      one("autocorrelation_time_dof", time.found() ? infinite : 0, "1", "its degrees of freedom"),
       one("drift", state.trend.line.value, series.units,
           "change of the mean over the taps, by a straight line")};
   add_errors(table, "drift", state.trend.line, series.units);

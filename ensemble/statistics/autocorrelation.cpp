@@ -33,6 +33,40 @@ std::vector<double> lagged_products(std::span<const double> series, Removed remo
   return products;
 }
 
+double wolff_error(double time, std::size_t window, std::size_t n_values) {
+  const double excess = std::fmax(0.0, static_cast<double>(window) + 0.5 - time);
+  return 2 * time * std::sqrt(excess / static_cast<double>(n_values));
+}
+
+/// Expectations of covariances of AR(1) of variance 1 and this autocorrelation time, about the
+/// means of series of n taps.
+struct ExpectedSum {
+  double time = 0.5;    // 1/2 + sum of correlations over lags 1 .. last, as from the covariances
+  double variance = 0;  // at lag 0
+  std::vector<double> lowered;  // [last + 1], by which the covariances are too small
+
+  ExpectedSum(double autocorrelation_time, std::size_t n, std::size_t last) {
+    const double rho = (2 * autocorrelation_time - 1) / (2 * autocorrelation_time + 1);
+    // With the mean of each tap's covariances with all taps, and the sums of these from the first.
+    std::vector<double> powers(n), sums(n + 1, 0.0), shared(n + 1, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+      powers[i] = i == 0 ? 1 : powers[i - 1] * rho;
+      sums[i + 1] = sums[i] + powers[i];
+    }
+    const auto length = static_cast<double>(n);
+    for (std::size_t i = 0; i < n; ++i)
+      shared[i + 1] = shared[i] + (sums[i + 1] + sums[n - i] - 1) / length;
+    const double of_mean = shared[n] / length;
+    for (std::size_t t = 0; t <= last; ++t) {
+      lowered.push_back((shared[n - t] + shared[n] - shared[t]) / static_cast<double>(n - t) -
+                        of_mean);
+      const double covariance = powers[t] - lowered.back();
+      if (t == 0) variance = covariance;
+      if (t > 0) time += covariance / variance;
+    }
+  }
+};
+
 }  // namespace
 
 void Autocorrelation::add(std::span<const double> series) {
@@ -44,36 +78,91 @@ void Autocorrelation::add(std::span<const double> series) {
   for (std::size_t lag = 0; lag < products.size(); ++lag) products_[lag] += products[lag];
 }
 
-AutocorrelationTime Autocorrelation::result() const {
-  const auto covariance = [&](std::size_t lag) {
-    return products_[lag] / static_cast<double>(realizations_ * (n_ - lag));
-  };
-  const double biased_variance = covariance(0);
-  if (!(biased_variance > 0)) return {.time = 0.5, .error = 0, .window = 1};
+/// Lags up to the first of at least 6 times the running sum.
+struct Autocorrelation::Sum {
+  double time = 0.5;       // from covariances about the means or lines of series
+  std::size_t last = 0;    // lag
+  bool has_ended = false;  // before half a series
+};
+
+double Autocorrelation::covariance(std::size_t lag) const {
+  return products_[lag] / static_cast<double>(realizations_ * (n_ - lag));
+}
+
+AutocorrelationTime Autocorrelation::to_first_order(const Sum& sum) const {
   AutocorrelationTime result{.time = 0.5};
-  std::size_t lag = 0;
-  while (++lag < products_.size()) {
-    result.time += covariance(lag) / biased_variance;
-    if (static_cast<double>(lag) >= window_in_times * result.time) break;
-  }
-  const bool found = lag < products_.size();
-  const std::size_t last = found ? lag : products_.size() - 1;
   // Subtracting the mean of a series lowers every covariance by the variance of that mean, and its
   // slope by as much again at lags that are short against the series.
   const double times = removed_ == Removed::line ? 2 : 1;
-  const double lowered = times * 2 * result.time * biased_variance / static_cast<double>(n_);
-  result.variance = biased_variance + lowered;
-  result.time = 0.5;
-  for (std::size_t t = 1; t <= last; ++t) {
+  const double lowered = times * 2 * sum.time * covariance(0) / static_cast<double>(n_);
+  result.variance = covariance(0) + lowered;
+  for (std::size_t t = 1; t <= sum.last; ++t) {
     const double correlation = (covariance(t) + lowered) / result.variance;
     result.time += correlation;
     result.squares += correlation * correlation;
   }
-  result.window = found ? last : 0;
-  const double n_values = static_cast<double>(realizations_ * n_);
-  const double excess = std::fmax(0.0, static_cast<double>(last) + 0.5 - result.time);
-  result.error = 2 * result.time * std::sqrt(excess / n_values);
+  result.window = sum.has_ended ? sum.last : 0;
+  result.error = wolff_error(result.time, sum.last, realizations_ * n_);
   return result;
+}
+
+AutocorrelationTime Autocorrelation::lower_bound(const Sum& sum) const {
+  AutocorrelationTime bound = to_first_order(sum);
+  bound.window = 0;
+  bound.time = std::fmax(0.5, bound.time - bound.error);
+  // Bartlett 1946.
+  const auto n_values = static_cast<double>(realizations_ * n_);
+  const double scatter = std::sqrt(2 * (1 + 2 * bound.squares) / n_values);
+  bound.variance = covariance(0) / (1 + scatter);
+  return bound;
+}
+
+AutocorrelationTime Autocorrelation::about_means(const Sum& sum) const {
+  const auto expected = [&](double time) { return ExpectedSum(time, n_, sum.last); };
+  const double first_order = to_first_order(sum).time;
+  // From below the solution, upwards by steps until the sum is reached; it falls beyond its
+  // maximum.
+  constexpr double step = 1.1;
+  const auto length = static_cast<double>(n_);
+  double low = std::fmax(0.05, 0.9 * first_order);
+  while (low > 0.05 && expected(low).time > sum.time) low /= step;
+  double high = low;
+  while (expected(high).time < sum.time) {
+    low = high;
+    high *= step;
+    if (high > length) return lower_bound(sum);
+  }
+  for (int i = 0; i < 40 && high - low > 1e-9 * high; ++i) {
+    const double middle = 0.5 * (low + high);
+    (expected(middle).time < sum.time ? low : high) = middle;
+  }
+  AutocorrelationTime result{.time = 0.5 * (low + high), .window = sum.last};
+  const ExpectedSum found = expected(result.time), more = expected(1.01 * result.time);
+  const double gain = (more.time - found.time) / (0.01 * result.time);
+  if (!(gain > 0)) return lower_bound(sum);
+  result.error = wolff_error(result.time, sum.last, realizations_ * n_) / gain;
+  if (length < fewest_times * (result.time + result.error)) return lower_bound(sum);
+  result.variance = covariance(0) / found.variance;
+  result.variance_error = result.variance * result.error *
+                          std::abs(more.variance / found.variance - 1) / (0.01 * result.time);
+  for (std::size_t t = 1; t <= sum.last; ++t) {
+    const double correlation = covariance(t) / result.variance + found.lowered[t];
+    result.squares += correlation * correlation;
+  }
+  return result;
+}
+
+AutocorrelationTime Autocorrelation::result() const {
+  if (!(covariance(0) > 0)) return {.time = 0.5, .error = 0, .window = 1};
+  Sum sum;
+  while (++sum.last < products_.size()) {
+    sum.time += covariance(sum.last) / covariance(0);
+    if (static_cast<double>(sum.last) >= window_in_times * sum.time) break;
+  }
+  sum.has_ended = sum.last < products_.size();
+  if (!sum.has_ended) sum.last = products_.size() - 1;
+  if (removed_ == Removed::line) return to_first_order(sum);
+  return sum.has_ended ? about_means(sum) : lower_bound(sum);
 }
 
 Line fit_line(std::span<const double> series) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -169,6 +170,87 @@ void check_one_realization(double rho, std::size_t n_taps, std::size_t ensembles
   CHECK(share(at_95) >= 0.9 - 3 * deviation(0.9, given));
 }
 
+/// How often sigma and the autocorrelation time of AR(1) are within their intervals, where these
+/// are given, and below the truth where they are lower bounds.
+struct MemoryCounts {
+  std::size_t ensembles = 0, given = 0;
+  std::size_t sigma_68 = 0, sigma_95 = 0, time_68 = 0, time_95 = 0;
+  std::size_t bounds_below = 0;  // both
+
+  double share(std::size_t n) const {
+    return given == 0 ? 0 : static_cast<double>(n) / static_cast<double>(given);
+  }
+  /// Intervals of 95 % that miss, of all ensembles.
+  double misses(std::size_t hits) const {
+    return static_cast<double>(given - hits) / static_cast<double>(ensembles);
+  }
+};
+
+MemoryCounts memory_counts(std::size_t realizations, std::size_t n_taps, double time,
+                           std::size_t ensembles) {
+  const double rho = (2 * time - 1) / (2 * time + 1), sigma = 1 / std::sqrt(1 - rho * rho);
+  MemoryCounts counts{.ensembles = ensembles};
+  for (std::size_t e = 0; e < ensembles; ++e) {
+    SteadyStateTest test;
+    for (std::size_t r = 0; r < realizations; ++r)
+      test.add(synthetic::autoregressive(rho, n_taps, 61000 + e, r));
+    const SteadyState state = test.result();
+    const AutocorrelationTime& found = state.autocorrelation;
+    CHECK(found.found() == state.sigma_error.known());
+    if (!found.found()) {
+      counts.bounds_below += state.sigma < sigma && found.time < time;
+      continue;
+    }
+    ++counts.given;
+    const auto within = [](double off, const ErrorOf& error, double level) {
+      return std::abs(off) <= error.error * student_two_sided(level, error.dof);
+    };
+    const ErrorOf time_error{found.error, 1e6};
+    counts.sigma_68 += within(state.sigma - sigma, state.sigma_error, interval_levels[0]);
+    counts.sigma_95 += within(state.sigma - sigma, state.sigma_error, interval_levels[1]);
+    counts.time_68 += within(found.time - time, time_error, interval_levels[0]);
+    counts.time_95 += within(found.time - time, time_error, interval_levels[1]);
+  }
+  return counts;
+}
+
+void check_memories(const std::vector<std::size_t>& lengths, std::size_t ensembles) {
+  fmt::print("\n  M  taps tau/n | given | sigma 68 %  95 % |  tau 68 %  95 % | bounds below\n");
+  for (const std::size_t n_taps : lengths) {
+    for (const std::size_t realizations : {3, 6, 20}) {
+      for (const double share : {0.01, 0.02, 0.05, 0.1, 0.2}) {
+        const double time = std::max(0.5, share * static_cast<double>(n_taps));
+        const MemoryCounts counts = memory_counts(realizations, n_taps, time, ensembles);
+        const std::size_t bounds = ensembles - counts.given;
+        fmt::print(
+            "{:>3} {:>5} {:>5} | {:>5.1f} | {:>10.1f} {:>5.1f} | {:>9.1f} {:>5.1f} | {:.1f}\n",
+            realizations, n_taps, share,
+            100 * static_cast<double>(counts.given) / static_cast<double>(ensembles),
+            100 * counts.share(counts.sigma_68), 100 * counts.share(counts.sigma_95),
+            100 * counts.share(counts.time_68), 100 * counts.share(counts.time_95),
+            100 * static_cast<double>(counts.bounds_below) / static_cast<double>(bounds));
+        CAPTURE(n_taps, realizations, share, counts.given, bounds);
+        // The estimate decides if an interval is given: few of all ensembles are misled.
+        for (const std::size_t hits : {counts.sigma_95, counts.time_95})
+          CHECK(counts.misses(hits) <= 0.1 + 3 * deviation(0.1, ensembles));
+        if (bounds > 20) {
+          CHECK(static_cast<double>(counts.bounds_below) >=
+                (0.7 - 3 * deviation(0.7, bounds)) * static_cast<double>(bounds));
+        }
+        if (share > 0.05) continue;
+        CHECK(5 * counts.given >= 4 * ensembles);
+        for (const std::size_t hits : {counts.sigma_68, counts.time_68}) {
+          CHECK(counts.share(hits) >= 0.62 - 3 * deviation(0.62, counts.given));
+          CHECK(counts.share(hits) <= 0.85 + 3 * deviation(0.85, counts.given));
+        }
+        for (const std::size_t hits : {counts.sigma_95, counts.time_95})
+          CHECK(counts.share(hits) >= 0.9 - 3 * deviation(0.9, counts.given));
+      }
+    }
+  }
+  std::fflush(stdout);
+}
+
 constexpr const char* one_heading = "\n taps   rho | given | 68 %  95 %\n";
 
 }  // namespace
@@ -186,6 +268,15 @@ TEST_CASE("The value of one realization has an interval that holds it, of any le
       check_one_realization(rho, n_taps, 300);
     }
   }
+}
+
+TEST_CASE("Intervals of sigma and of the autocorrelation time hold them, or are not given",
+          "[statistics]") {
+  check_memories({75}, 100);
+}
+
+TEST_CASE("Intervals of sigma and of the autocorrelation time hold them, of any length", "[slow]") {
+  check_memories({75, 300, 1000}, 400);
 }
 
 TEST_CASE("Steady series of two time scales are seldom called unsteady", "[statistics]") {

@@ -102,7 +102,7 @@ TEST_CASE("The stored AR(1) series has the exact error and autocorrelation time"
   const double time = 0.5 * exact.at("g_stat_ineff").get<double>();
   REQUIRE(state.autocorrelation.found());
   CHECK(std::abs(state.autocorrelation.time - time) < 3 * state.autocorrelation.error);
-  CHECK(std::abs(state.sigma - exact_sigma()) < 3 * state.sigma_error);
+  CHECK(std::abs(state.sigma - exact_sigma()) < 3 * state.sigma_error.error);
   CHECK(state.verdict() == Verdict::reached);
 }
 
@@ -123,7 +123,7 @@ void check_errors(std::size_t realizations) {
     times.add(state.autocorrelation.time);
     time_errors.add(state.autocorrelation.error);
     sigmas.add(state.sigma);
-    sigma_errors.add(state.sigma_error);
+    sigma_errors.add(state.sigma_error.error);
     if (state.blocking.plateau) plateaus.add(state.blocking.error());
     drifting += state.verdict() == Verdict::not_reached;
   }
