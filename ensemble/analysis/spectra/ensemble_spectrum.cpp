@@ -64,7 +64,7 @@ constexpr std::size_t none_left_out = std::numeric_limits<std::size_t>::max();
 FrequencyBins logarithmic_bins(std::size_t segment, std::size_t first_line, double per_decade) {
   assert(first_line >= 1 && per_decade > 0);
   FrequencyBins bins;
-  const std::size_t end = segment / 2 + 1;
+  const std::size_t end = (segment + 1) / 2;
   const double ratio = std::pow(10.0, 1 / per_decade);
   for (std::size_t first = first_line; first < end;) {
     const auto wide = static_cast<std::size_t>(std::lround(static_cast<double>(first) * ratio));

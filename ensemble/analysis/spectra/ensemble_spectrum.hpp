@@ -17,7 +17,9 @@ struct FrequencyBins {
   std::size_t n_lines(std::size_t bin) const { return first[bin + 1] - first[bin]; }
 };
 
-/// Bins of a spectrum of segments of n taps, from line `first_line` >= 1 to n/2, none empty.
+/// Bins of a spectrum of segments of n taps, from line `first_line` >= 1 to the last below n/2,
+/// none empty. Line n/2 of an even n has one side only, half the density of its neighbours, and
+/// would bend the end of a spectrum down.
 FrequencyBins logarithmic_bins(std::size_t segment, std::size_t first_line, double per_decade);
 
 /// Frequencies, in 1/taps, both ends included.

@@ -101,3 +101,54 @@ TEST_CASE("The expected slope of AR(1) is the mean of measured ones, as steep as
     CHECK(expected < -1.5);
   }
 }
+
+namespace {
+
+struct FalseAlarms {
+  double share = 0;  // ensembles whose slope is called other
+  Moments slopes;    // measured
+};
+
+/// Ensembles of AR(1) of `taps` taps, analysed with segments of so many taps.
+FalseAlarms false_alarms(std::size_t segment, std::size_t taps, double time,
+                         std::size_t realizations, std::size_t ensembles) {
+  const double rho = (2 * time - 1) / (2 * time + 1);
+  FalseAlarms found;
+  double other = 0;
+  for (std::size_t e = 0; e < ensembles; ++e) {
+    std::vector<std::vector<double>> ensemble;
+    for (std::size_t r = 0; r < realizations; ++r)
+      ensemble.push_back(synthetic::autoregressive(rho, taps, 20261129 + e, r));
+    const Table table = analysed(ensemble, {.segment = segment});
+    found.slopes.add(number(table, "slope"));
+    other += number(table, "ar1_slope_p") < 0.05;
+  }
+  found.share = other / static_cast<double>(ensembles);
+  fmt::print(
+      "segment {:>3}, {:>4} taps, tau {:>4}, M {:>2}: slope {:>7.3f} +- {:.3f}, called other "
+      "{:.1f} %\n",
+      segment, taps, time, realizations, found.slopes.mean(), found.slopes.standard_error(),
+      100 * found.share);
+  std::fflush(stdout);
+  return found;
+}
+
+void check_segments(std::size_t ensembles, const std::vector<double>& times) {
+  for (const std::size_t segment : {16, 36, 64}) {
+    for (const std::size_t realizations : {3, 6}) {
+      for (const double time : times) {
+        const FalseAlarms found = false_alarms(segment, 4 * segment, time, realizations, ensembles);
+        CAPTURE(segment, realizations, time);
+        CHECK(found.share <= 0.05 + 3 * std::sqrt(0.05 * 0.95 / static_cast<double>(ensembles)));
+        if (time == 0.5) CHECK(std::abs(found.slopes.mean()) < 3 * found.slopes.standard_error());
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("White noise has slope 0 in segments of any length, and is not called other",
+          "[statistics]") {
+  check_segments(400, {0.5});
+}
