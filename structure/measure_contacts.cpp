@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 
+#include "engine/numbers.hpp"
 #include "structure/measure_parts.hpp"
 #include "structure/order/accessible.hpp"
 #include "structure/order/gaps.hpp"
@@ -83,7 +84,12 @@ std::string tolerance_note(double tolerance, const char* unit) {
   return std::string("surfaces up to ") + gap + unit +
          " apart touch. A packing in which such contacts hold no sphere, as of hard spheres that "
          "Monte Carlo stops at a distance, has no backbone: it counts neither in rattlers nor in "
-         "backbone_contacts";
+         "backbone_contacts, and at each gap neither in rattlers_of_gap nor in backbone_z_of_gap";
+}
+
+/// Returns the fraction of rattlers; NaN where all spheres are, in a packing without a backbone.
+double rattlers_of_backbone(const Contacts& found) {
+  return found.rattlers < 1 ? found.rattlers : not_a_number;
 }
 
 }  // namespace
@@ -108,7 +114,7 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
   for (const double gap : grid) {
     const Contacts found = contacts_within(in, near, gap, least);
     all.push_back(found.all);
-    rattlers.push_back(found.rattlers);
+    rattlers.push_back(rattlers_of_backbone(found));
     without.push_back(found.without_rattlers);
     exponents.push_back(gap > 0 && gap < 0.7 * settings.window.high
                             ? gap_exponent(gaps, gap, settings.window.high, weights)
@@ -127,8 +133,10 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
       {.name = "rattlers_of_gap",
        .places = "gap",
        .values = rattlers,
-       .long_name = "fraction of rattlers if what is within the gap touches",
-       .source = donev},
+       .long_name =
+           "fraction of rattlers if what is within the gap touches, of packings with a backbone",
+       .source = donev,
+       .with_packings = true},
       {.name = "backbone_z_of_gap",
        .places = "gap",
        .values = without,
@@ -148,7 +156,7 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
        .values = {found.all},
        .long_name = "mean number of contacts within the tolerance"},
       {.name = "rattlers",
-       .values = {found.rattlers < 1 ? found.rattlers : std::nan("")},
+       .values = {rattlers_of_backbone(found)},
        .long_name = "fraction of rattlers, removed one after another, of packings with a backbone",
        .source = donev,
        .with_packings = true},

@@ -153,7 +153,8 @@ Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settin
                      .source = "Rosato et al. 2010, fig. 3"},
                     {.name = "n_spheres",
                      .values = {static_cast<double>(in_region.size())},
-                     .long_name = "spheres of the region"}};
+                     .long_name = "spheres of the region",
+                     .is_compared = false}};
   if (in.packing.sizes) add_kinds(in, settings.cut, out);
   return out;
 }
@@ -203,7 +204,8 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
       {.name = "density",
        .values = {pairs.density},
        .units = "1/diameter^3",
-       .long_name = "mean number of centres in the accessible region that shells sample",
+       .long_name = "mean over all places open to centres, those at walls included; density x g "
+                    "is not the number of neighbours: use `neighbours`",
        .pooling = Pooling::weighted,
        .weights = {centres}},
       {.name = "centres",

@@ -153,6 +153,7 @@ Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
                out, "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309");
   add_single("n_cells", static_cast<double>(inner.volumes.size()), "whole cells of the region",
              out);
+  out.quantities.back().is_compared = false;
   const VoronoiCells& cells = in.voronoi();
   const double lid = surface_height(in.packing);
   double all = 0;
@@ -209,6 +210,7 @@ Measurement measure_part(MeasuredPacking& in, const PoresSettings& settings) {
                      .long_name = "pores a unit of ln v",
                      .source = "Philippe & Bideau 2001, fig. 10"}};
   add_single("n_pores", number, "pores of the region", out, "Philippe & Bideau 2001, sec. V");
+  out.quantities.back().is_compared = false;
   add_single("nu", mean_pore_volume(found), "mean of xi^3", out, "Philippe & Bideau 2001, sec. V",
              "sphere volumes");
   add_single("mean_touched", touched / number, "spheres that a pore touches", out);
@@ -240,8 +242,8 @@ Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings) {
       {.name = "p0",
        .places = "sigma",
        .values = found.probability,
-       .long_name = "chance that a random sphere contains no centre; beyond sigma = 1 "
-                    "of spheres that reach no place where no centre may be",
+       .long_name = "chance that a random sphere contains no centre; beyond sigma = 1 only "
+                    "spheres that lie wholly where centres can be",
        .source = "Philippe & Bideau 2001, fig. 9",
        .beyond = not_a_number},
       {.name = "p0_points_error",

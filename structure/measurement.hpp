@@ -48,6 +48,9 @@ struct MeasuredQuantity {
   bool with_error = true;
   /// True if the packings that have a value are counted: so where a packing may have none.
   bool with_packings = false;
+  /// False if it counts what lies in a region whose height follows each bed: a difference of such
+  /// counts between ensembles has no meaning of its own and is not tested.
+  bool is_compared = true;
 
   double at(std::size_t place) const { return place < values.size() ? values[place] : beyond; }
   double weight_at(std::size_t place) const { return place < weights.size() ? weights[place] : 0; }

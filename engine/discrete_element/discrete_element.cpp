@@ -64,7 +64,8 @@ std::vector<Column> columns(const DiscreteElement&) {
        .shown = Shown::mean},
       {.name = "mean_overlap",
        .units = "diameter",
-       .long_name = "mean overlap of spheres that press on each other when the tap ended",
+       .long_name = "mean overlap of spheres that press on each other when the tap ended, contacts "
+                    "with floor and sides left out",
        .source = source,
        .shown = Shown::stored},
       {.name = "contacts",

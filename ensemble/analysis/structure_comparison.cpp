@@ -18,7 +18,8 @@ const MeasuredQuantity* found(const std::vector<Measurement>& parts, std::size_t
 }
 
 bool is_number(const MeasuredQuantity& quantity) {
-  return quantity.places.empty() && quantity.pooling == Pooling::mean && quantity.with_error;
+  return quantity.places.empty() && quantity.pooling == Pooling::mean && quantity.with_error &&
+         quantity.is_compared;
 }
 
 /// A number of one part in every packing.

@@ -46,11 +46,12 @@ class Statements(Case):
             kinetic, _, shown = condition.partition("not shown")
             self.assertEqual(place in kinetic, verdict == "not reached", condition)
             self.assertEqual(place in shown, verdict.startswith("cannot decide"), condition)
-        self.assertTrue(sweep[f"{name}: steady"].startswith("kinetic: the averaged taps still drift at "))
+        self.assertTrue(sweep[f"{name}: steady"].startswith("kinetic: the averaged taps still drift at sqrt_epsilon "))
         for extremum in ("maximum", "minimum"):
             self.assertTrue(sweep[f"{name}: {extremum}"].endswith(sweep[f"{name}: steady"]))
         few = self.notes("analyse", "tiny.h5", "sweep", "--observable", "mean_height", "--last", "5")
-        self.assertIn("not shown to be steady: the averaged taps at 0.03162, 0.04472, 0.06325", few[f"{name}: steady"])
+        self.assertIn("not shown to be steady: the averaged taps at sqrt_epsilon = 0.03162 (dilate = 0.001), "
+                      "0.04472 (dilate = 0.002), 0.06325 (dilate = 0.004)", few[f"{name}: steady"])
 
     def test_packings_whose_spheres_do_not_touch_have_no_rattlers(self):
         self.write(changed(TAPPED, sweep={SWEPT: [0.05]}))

@@ -231,11 +231,11 @@ Table ageing_table(std::string name, const Column& observable, const TapRows& ro
   add_laws(fits.shared, "shared_", ", b common to all waiting times", units, true, table);
   add_scaled(curves, fits, table);
   add_distances(curves, fits, table);
-  add_trend(fits.ageing, "ageing", "a", table);
-  add_trend(fits.fluctuations, "fluctuation", "v", table);
+  add_trend(fits.ageing, "ageing", "A", table);
+  add_trend(fits.fluctuations, "fluctuation", "V", table);
   add_trend(fits.collapse, "collapse", "b", table);
-  add_scaling(fits.a_scaling, "", "a", table);
-  add_scaling(fits.v_scaling, "v_", "v", table);
+  add_scaling(fits.a_scaling, "", "A", table);
+  add_scaling(fits.v_scaling, "v_", "V", table);
   table.quantities.push_back({"realizations_fitted",
                               {},
                               std::vector{fits.realizations},

@@ -223,16 +223,16 @@ AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) 
   for_each(threads, curves.size(), [&](std::size_t curve) {
     fits.own[curves.waiting_times[curve]] = own_law(curves.one(curve));
   });
-  fits.ageing = trend_with_age(curves, "a");
-  fits.a_scaling = time_scaling(curves, grid, "a");
+  fits.ageing = trend_with_age(curves, "A");
+  fits.a_scaling = time_scaling(curves, grid, "A");
   if (complete.size() < 4) {
     constexpr const char* too_few = "variances need four realizations";
     fits.fluctuations = cannot_decide(too_few);
     fits.v_scaling = cannot_scale(too_few);
   } else {
     const LogCurves variances = log_curves(rows, grid, complete, Changes::variance);
-    fits.fluctuations = trend_with_age(variances, "v");
-    fits.v_scaling = time_scaling(variances, grid, "v");
+    fits.fluctuations = trend_with_age(variances, "V");
+    fits.v_scaling = time_scaling(variances, grid, "V");
   }
   fit_shared(curves, grid.lags.size(), threads, fits);
   return fits;

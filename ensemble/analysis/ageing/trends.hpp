@@ -20,8 +20,8 @@ AgeTrend cannot_decide(const std::string& why);
 
 /// The words of a test.
 struct TestedChange {
-  std::string of;        // "a": what may change
-  std::string changes;   // the verdict where it does: "a changes with age"
+  std::string of;        // "A": what may change
+  std::string changes;   // the verdict where it does: "A changes with age"
   std::string does_not;  // and where a factor of ten would have been found
 };
 /// The logarithm of the factor is the sum of weights times `values` over that of the weights'

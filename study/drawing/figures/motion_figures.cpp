@@ -107,8 +107,9 @@ FigurePanel susceptibility(const TableView& table) {
       .title = "Spheres that move together",
       .caption = finite_text(
           "χ_4, the variance over realizations of the share of spheres that moved sideways by "
-          "less than {:.4g} d, times their number, at the overlap length where it is greatest; "
-          "bars are 68 % intervals, left out where few spheres have moved.",
+          "less than {:.4g} d, times their number, at the overlap length where it is greatest, a "
+          "choice that biases it upwards; bars are 68 % intervals, left out where few spheres have "
+          "moved.",
           lengths[place]),
       .source = table.source(name),
       .x = {"lag t (taps)", AxisKind::logarithmic},

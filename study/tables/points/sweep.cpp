@@ -187,13 +187,17 @@ std::size_t point_at(const SweepCurve& curve, double x, const std::string& axis)
                              joined(places, ", ")));
 }
 
-/// Places of the points whose averaged taps have this verdict.
+/// Places of the points whose averaged taps have this verdict, with the settings that are swept
+/// where these are not the places themselves: "0.1414 (dilate = 0.02)".
 std::vector<std::string> places_of(std::span<const Member> members,
                                    const std::optional<Verdict>& verdict) {
   std::vector<std::string> places;
   for (const Member& member : members) {
-    if (!member.taps.empty() && member.steady == verdict)
-      places.push_back(finite_text("{:.4g}", member.x));
+    if (member.taps.empty() || member.steady != verdict) continue;
+    const std::string& settings = member.file->study().points[member.point].label;
+    places.push_back(finite_text("{:.4g}", member.x));
+    if (!settings.empty() && !settings.starts_with(member.swept.name + " = "))
+      places.back().append(" (").append(settings).append(")");
   }
   return places;
 }
@@ -206,12 +210,13 @@ void add_steadiness(std::span<const Member> members, Table& table) {
   std::vector<std::string> open = places_of(members, Verdict::cannot_decide);
   const auto too_few = places_of(members, std::nullopt);
   open.insert(open.end(), too_few.begin(), too_few.end());
+  const std::string axis = members.front().swept.name + " = ";
   std::string condition;
   if (!moving.empty())
-    condition = "kinetic: the averaged taps still drift at " + joined(moving, ", ");
+    condition = "kinetic: the averaged taps still drift at " + axis + joined(moving, ", ");
   if (!open.empty()) {
     condition.append(condition.empty() ? "" : "; ")
-        .append("not shown to be steady: the averaged taps at ")
+        .append("not shown to be steady: the averaged taps at " + axis)
         .append(joined(open, ", "));
   }
   table.notes.emplace_back(

@@ -104,6 +104,7 @@ TEST_CASE("Numbers of packings are single values with an error") {
   one.quantities = {{.name = "q6", .values = {0.4}, .long_name = "mean q6"},
                     {.name = "q6_at_height", .places = "height", .values = {0.1, 0.2}},
                     {.name = "line_error", .values = {0.1}, .with_error = false},
+                    {.name = "n_pores", .values = {9}, .is_compared = false},
                     {.name = "pairs", .values = {7}, .pooling = Pooling::sum}};
   const EnsembleStructure structure{.taps = {0, 3}, .packings = {{{one}, {}}, {{}, {one}}}};
   const ComparedPoint numbers = packing_numbers("weak", 4, structure);

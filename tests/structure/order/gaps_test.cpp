@@ -1,5 +1,6 @@
 #include "structure/order/gaps.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -159,6 +160,28 @@ TEST_CASE("Spheres that rest on three are no rattlers under gravity") {
   const auto none = measure(chain(10), settings, StreamKey{}).at(0);
   CHECK(std::isnan(none.find("rattlers")->values[0]));
   CHECK(std::isnan(none.find("backbone_contacts")->values[0]));
+}
+
+TEST_CASE("The fraction of rattlers at a tolerance is that of its curve at the same gap") {
+  StructureSettings settings;
+  settings.gaps.emplace();
+  settings.gaps->least_contacts = 4;
+  settings.gaps->tolerance = std::pow(10, -2.4);
+  const auto found = measure(reference_deposit(), settings, StreamKey{}).at(0);
+  const auto& gaps = std::get<std::vector<double>>(found.places[0].values);
+  const MeasuredQuantity& curve = *found.find("rattlers_of_gap");
+  const auto at = std::ranges::min_element(
+      gaps, {}, [&](double gap) { return std::abs(gap - settings.gaps->tolerance); });
+  REQUIRE(*at == Approx(settings.gaps->tolerance).epsilon(1e-9));
+  CHECK(curve.values[static_cast<std::size_t>(at - gaps.begin())] ==
+        found.find("rattlers")->values[0]);
+  CHECK(curve.with_packings);
+  // No gap gives a chain a backbone: it has no fraction of rattlers at any.
+  settings.gaps->least_contacts.reset();
+  settings.region = Region{0.5, 10, 0};
+  const auto none = measure(chain(10), settings, StreamKey{}).at(0);
+  for (const double value : none.find("rattlers_of_gap")->values) CHECK(std::isnan(value));
+  for (const double value : none.find("backbone_z_of_gap")->values) CHECK(std::isnan(value));
 }
 
 TEST_CASE("The part gaps counts contacts against the gap, and the region alone") {

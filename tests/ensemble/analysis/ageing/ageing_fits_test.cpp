@@ -137,7 +137,7 @@ TEST_CASE("Scaled curves of one B collapse, unscaled ones do not", "[statistics]
   CHECK(scalar(table, "collapse_p") >= 0.005);
   CHECK(scalar(table, "ageing_p") < 0.05);
   CHECK(scalar(table, "ageing_factor_high_95") < 1);
-  CHECK(note(table, "ageing_verdict").starts_with("a changes with age"));
+  CHECK(note(table, "ageing_verdict").starts_with("A changes with age"));
   CHECK(note(table, "collapse_verdict").find("p = ") != std::string::npos);
 }
 
