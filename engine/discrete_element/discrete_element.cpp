@@ -64,8 +64,7 @@ std::vector<Column> columns(const DiscreteElement&) {
        .shown = Shown::mean},
       {.name = "mean_overlap",
        .units = "diameter",
-       .long_name = "mean overlap of spheres that press on each other when the tap ended, contacts "
-                    "with floor and sides left out",
+       .long_name = "mean overlap of spheres that press on each other when the tap ended",
        .source = source,
        .shown = Shown::stored},
       {.name = "contacts",

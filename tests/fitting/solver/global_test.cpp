@@ -182,7 +182,7 @@ TEST_CASE("a fixed time that breaks the order of two decays is remarked on") {
   const Curve curve = curve_of(two_decays, 5e-4);
   const auto remarked = [](const Fit& fit) {
     return std::any_of(fit.remarks.begin(), fit.remarks.end(), [](const std::string& remark) {
-      return remark.find("another order") != std::string::npos;
+      return remark.find("from the order of this law") != std::string::npos;
     });
   };
   CHECK(remarked(fitted(TwoExponentials(), curve, {.fixed = {{"tau2", 1}}})));
