@@ -29,7 +29,7 @@ namespace {
 /// Below the help of one kind: an example, and a reference to the rest of its command line.
 void add_example(Command kind, const std::string& example) {
   kind.footer("Example:\n  " + example +
-              "\n\nThe files, --sweep-point and options of the output come before the analysis: "
+              "\n\nFiles come before the analysis. Common options may come before or after it: "
               "jostle analyse --help.");
 }
 
