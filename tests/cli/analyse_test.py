@@ -61,20 +61,19 @@ class Analysed(Case):
     def test_a_spectrum_holds_the_variance_of_its_lines(self):
         self.write(TAPPED)
         self.run_scene()
-        # Segments of an odd length have no line at half the sampling frequency, which bins leave out.
-        asked = ["tiny.h5", "spectrum", "--observable", "mean_height", "--last", "127",
-                 "--segment", "127", "--window", "boxcar", "--sweep-point", "0"]
+        asked = ["tiny.h5", "spectrum", "--observable", "mean_height", "--last", "128",
+                 "--segment", "128", "--window", "boxcar", "--sweep-point", "0"]
         table = self.analyse(*asked)["tables"][0]
         self.assertEqual(table["quantities"]["density"]["units"], "diameter^2 taps")
         lines = table["quantities"]["lines"]["values"]
-        self.assertEqual(sum(lines), 63)
+        self.assertEqual(sum(lines), 64)
         density = table["quantities"]["density"]["values"]
-        from_lines = sum(p * n for p, n in zip(density, lines)) / 127
-        steady = self.analyse("tiny.h5", "steady", "--observable", "mean_height", "--last", "127",
+        from_lines = sum(p * n for p, n in zip(density, lines)) / 128
+        steady = self.analyse("tiny.h5", "steady", "--observable", "mean_height", "--last", "128",
                               "--sweep-point", "0", "--no-store")["tables"][0]
-        # Blocks of one tap: variance of single taps / (n - 1) over all 381 of them.
+        # Blocks of one tap: variance of single taps / (n - 1) over all 384 of them.
         error = steady["quantities"]["block_error"]["values"][0]
-        self.assertAlmostEqual(from_lines / (error ** 2 * 381 * 126 / 127), 1, places=9)
+        self.assertAlmostEqual(from_lines / (error ** 2 * 384 * 127 / 128), 1, places=9)
         self.assertIn("drift", table["notes"]["drift"])
         self.assertIn("a stationary AR(1) with", table["notes"]["verdict"])
         band = self.analyse(*asked, "--band", "0.01:0.2")["tables"][0]

@@ -57,14 +57,21 @@ std::vector<double> bin_means(const Spectrum& spectrum, const FrequencyBins& bin
   return means;
 }
 
+std::vector<double> relative_errors_of(const FrequencyBins& bins, std::size_t n_taps,
+                                       const SpectrumOptions& options) {
+  std::vector<std::size_t> lines;
+  for (std::size_t b = 0; b < bins.n_bins(); ++b) lines.push_back(bins.n_lines(b));
+  return relative_errors(options, n_segments(n_taps, options), lines);
+}
+
 constexpr std::size_t none_left_out = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
 
-FrequencyBins logarithmic_bins(std::size_t segment, std::size_t first_line, double per_decade) {
+FrequencyBins logarithmic_bins(std::size_t segment, std::size_t first_line, double per_decade,
+                               std::size_t end) {
   assert(first_line >= 1 && per_decade > 0);
   FrequencyBins bins;
-  const std::size_t end = (segment + 1) / 2;
   const double ratio = std::pow(10.0, 1 / per_decade);
   for (std::size_t first = first_line; first < end;) {
     const auto wide = static_cast<std::size_t>(std::lround(static_cast<double>(first) * ratio));
@@ -93,16 +100,20 @@ SpectrumAverage::SpectrumAverage(std::size_t n_taps, const SpectrumOptions& opti
                                  double bins_per_decade)
     : n_taps_(n_taps),
       options_(options),
-      bins_(logarithmic_bins(options.segment, first_sound_line(options), bins_per_decade)) {
+      bins_(logarithmic_bins(options.segment, first_sound_line(options), bins_per_decade,
+                             options.segment / 2 + 1)),
+      slope_bins_(logarithmic_bins(options.segment, first_sound_line(options), bins_per_decade,
+                                   (options.segment + 1) / 2)),
+      relative_errors_(relative_errors_of(bins_, n_taps, options)),
+      slope_errors_(relative_errors_of(slope_bins_, n_taps, options)) {
   assert(options.segment > 0 && n_segments(n_taps, options) > 0);
-  std::vector<std::size_t> lines;
-  for (std::size_t b = 0; b < bins_.n_bins(); ++b) lines.push_back(bins_.n_lines(b));
-  relative_errors_ = relative_errors(options, n_segments(n_taps, options), lines);
 }
 
 void SpectrumAverage::add(std::span<const double> series) {
   assert(series.size() == n_taps_);
-  densities_.push_back(bin_means(welch(series, options_), bins_));
+  const Spectrum spectrum = welch(series, options_);
+  densities_.push_back(bin_means(spectrum, bins_));
+  slope_densities_.push_back(bin_means(spectrum, slope_bins_));
 }
 
 EnsembleSpectrum SpectrumAverage::result() const {
@@ -124,13 +135,14 @@ EnsembleSpectrum SpectrumAverage::result() const {
 
 std::vector<double> SpectrumAverage::sound_log_density(std::size_t left_out) const {
   std::vector<double> logarithms;
-  const double n = static_cast<double>(densities_.size()) - (left_out == none_left_out ? 0 : 1);
-  for (std::size_t b = 0; b < bins_.n_bins(); ++b) {
+  const double n =
+      static_cast<double>(slope_densities_.size()) - (left_out == none_left_out ? 0 : 1);
+  for (std::size_t b = 0; b < slope_bins_.n_bins(); ++b) {
     double sum = 0;
-    for (std::size_t r = 0; r < densities_.size(); ++r) {
-      if (r != left_out) sum += densities_[r][b];
+    for (std::size_t r = 0; r < slope_densities_.size(); ++r) {
+      if (r != left_out) sum += slope_densities_[r][b];
     }
-    const double inverse = relative_errors_[b] * relative_errors_[b] / n;  // 1 / k
+    const double inverse = slope_errors_[b] * slope_errors_[b] / n;  // 1 / k
     logarithms.push_back(std::log(sum / n) + inverse / 2 + inverse * inverse / 12);
   }
   return logarithms;
@@ -138,14 +150,14 @@ std::vector<double> SpectrumAverage::sound_log_density(std::size_t left_out) con
 
 LogLogSlope SpectrumAverage::slope(const Band& band) const {
   const auto without = [&](std::size_t left_out) {
-    return straight_line(in_band(bins_.frequency, sound_log_density(left_out), band));
+    return straight_line(in_band(slope_bins_.frequency, sound_log_density(left_out), band));
   };
   LogLogSlope slope = without(none_left_out);
-  if (densities_.size() < 3) return slope;
+  if (slope_densities_.size() < 3) return slope;
   Moments slopes;
-  for (std::size_t r = 0; r < densities_.size(); ++r) slopes.add(without(r).slope);
+  for (std::size_t r = 0; r < slope_densities_.size(); ++r) slopes.add(without(r).slope);
   // Tukey 1958: leaving one out moves an estimate by 1/(n - 1) of what redrawing it would.
-  slope.dof = static_cast<double>(densities_.size() - 1);
+  slope.dof = static_cast<double>(slope_densities_.size() - 1);
   slope.error = slopes.sigma() * std::sqrt(slope.dof);
   return slope;
 }
@@ -155,12 +167,12 @@ double SpectrumAverage::autoregressive_slope(double time, const Band& band) cons
   const std::vector<double> lines = expected_welch(
       options_, [rho](std::size_t lag) { return std::pow(rho, static_cast<double>(lag)); });
   std::vector<double> means;
-  for (std::size_t b = 0; b < bins_.n_bins(); ++b) {
+  for (std::size_t b = 0; b < slope_bins_.n_bins(); ++b) {
     Moments bin;
-    for (std::size_t k = bins_.first[b]; k < bins_.first[b + 1]; ++k) bin.add(lines[k]);
+    for (std::size_t k = slope_bins_.first[b]; k < slope_bins_.first[b + 1]; ++k) bin.add(lines[k]);
     means.push_back(bin.mean());
   }
-  return log_log_slope(bins_.frequency, means, band).slope;
+  return log_log_slope(slope_bins_.frequency, means, band).slope;
 }
 
 }  // namespace jostle::inline ensemble

@@ -17,10 +17,10 @@ struct FrequencyBins {
   std::size_t n_lines(std::size_t bin) const { return first[bin + 1] - first[bin]; }
 };
 
-/// Bins of a spectrum of segments of n taps, from line `first_line` >= 1 to the last below n/2,
-/// none empty. Line n/2 of an even n has one side only, half the density of its neighbours, and
-/// would bend the end of a spectrum down.
-FrequencyBins logarithmic_bins(std::size_t segment, std::size_t first_line, double per_decade);
+/// Bins of a spectrum of segments of n taps, from line `first_line` >= 1 to the last before `end`
+/// <= n/2 + 1, none empty.
+FrequencyBins logarithmic_bins(std::size_t segment, std::size_t first_line, double per_decade,
+                               std::size_t end);
 
 /// Frequencies, in 1/taps, both ends included.
 struct Band {
@@ -80,8 +80,11 @@ class SpectrumAverage {
   std::size_t n_taps_;
   SpectrumOptions options_;
   FrequencyBins bins_;
-  std::vector<double> relative_errors_;         // [n_bins], of one realization
-  std::vector<std::vector<double>> densities_;  // [n_realizations][n_bins]
+  /// Without line n/2 of an even n, which has one side only and half the density of its neighbours:
+  /// it would bend the end of the spectrum down.
+  FrequencyBins slope_bins_;
+  std::vector<double> relative_errors_, slope_errors_;            // [n_bins], of one realization
+  std::vector<std::vector<double>> densities_, slope_densities_;  // [n_realizations][n_bins]
 };
 
 }  // namespace jostle::inline ensemble
