@@ -140,8 +140,10 @@ AutocorrelationTime Autocorrelation::about_means(const Sum& sum) const {
   const ExpectedSum found = expected(result.time), more = expected(1.01 * result.time);
   const double gain = (more.time - found.time) / (0.01 * result.time);
   if (!(gain > 0)) return lower_bound(sum);
-  result.error = wolff_error(result.time, sum.last, realizations_ * n_) / gain;
-  if (length < fewest_times * (result.time + result.error)) return lower_bound(sum);
+  // Means take a part of the sum's scatter with them: about as much of its square as of its gain.
+  const double scatter = wolff_error(result.time, sum.last, realizations_ * n_);
+  result.error = scatter / std::sqrt(gain);
+  if (length < fewest_times * (result.time + scatter / gain)) return lower_bound(sum);
   result.variance = covariance(0) / found.variance;
   result.variance_error = result.variance * result.error *
                           std::abs(more.variance / found.variance - 1) / (0.01 * result.time);

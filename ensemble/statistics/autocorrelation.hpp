@@ -37,12 +37,12 @@ enum class Removed { mean, line };
 /// The bias by subtracting each series' own line is put right to first order (eq. 32). The bias
 /// by subtracting the mean is removed entirely for AR(1): the time is that of the AR(1) process
 /// whose covariances, about the means of series of this length, have the sum that was found.
-/// Where no process has it, or where a series has fewer than five times the time plus its
+/// Where no process has it, or where a series has fewer than ten times the time plus its
 /// error, the values are lower bounds: one standard error below the time to first order and
 /// below the uncorrected variance.
 class Autocorrelation {
  public:
-  static constexpr double fewest_times = 5;  // in a series
+  static constexpr double fewest_times = 10;  // in a series
 
   explicit Autocorrelation(Removed removed = Removed::mean) : removed_(removed) {}
 

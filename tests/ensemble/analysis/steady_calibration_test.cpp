@@ -237,7 +237,7 @@ void check_memories(const std::vector<std::size_t>& lengths, std::size_t ensembl
           CHECK(static_cast<double>(counts.bounds_below) >=
                 (0.7 - 3 * deviation(0.7, bounds)) * static_cast<double>(bounds));
         }
-        if (share > 0.05) continue;
+        if (share > 0.02) continue;
         CHECK(5 * counts.given >= 4 * ensembles);
         for (const std::size_t hits : {counts.sigma_68, counts.time_68}) {
           CHECK(counts.share(hits) >= 0.62 - 3 * deviation(0.62, counts.given));
