@@ -137,9 +137,7 @@ void check_errors(std::size_t realizations) {
   CHECK(plateaus.mean() == Approx(error).epsilon(0.05));
   // The sum ends at 6 times: what is left out is below 1 %.
   CHECK(times.mean() == Approx(9.5).epsilon(0.01).margin(3 * times.standard_error()));
-  // The formula holds for a fixed window; one that ends at 6 times what was found scatters less.
-  CHECK(time_errors.mean() > (1 - spread) * times.sigma());
-  CHECK(time_errors.mean() < (1.1 + spread) * times.sigma());
+  CHECK(time_errors.mean() == Approx(times.sigma()).epsilon(spread + 0.05));
   CHECK(sigmas.mean() == Approx(exact_sigma()).epsilon(0.002).margin(3 * sigmas.standard_error()));
   CHECK(sigma_errors.mean() == Approx(sigmas.sigma()).epsilon(spread + 0.05));
   // 3 deviations of 400 ensembles.
