@@ -29,7 +29,7 @@ ONE_POINT = {
     "covariance-ratio-of-mean-height", "packing-fraction-by-height",
     "packing-fraction-by-height-smoothed", "centres-by-height-n-z", "how-sharp-the-layers-are",
     "how-full-the-layers-are", "pair-correlation-g-r", "bond-order-by-height",
-    "fcc-surroundings-by-height", "free-volumes", "local-packing-fractions", "faces-of-the-cells"}
+    "spheres-with-fcc-order-by-height", "free-volumes", "local-packing-fractions", "faces-of-the-cells"}
 
 
 def series_of(path):
@@ -102,7 +102,7 @@ class Everything(Figures):
 
     def curves(self, file):
         figure = json.loads((self.folder / "figures/mean-height.json").read_text())
-        self.assertRegex(figure["origin"], r"^Of everything\.h5: 48 spheres in .* diameters; 3 realizations per sweep "
+        self.assertRegex(figure["origin"], r"^Data: everything\.h5: 48 spheres in .* diameters; 3 realizations per sweep "
                                 r"point\. Drawn by jostle ")
         series = self.data("mean-height")
         points = ["ε = 0.02", "ε = 0.05", "ε = 0.1"]
