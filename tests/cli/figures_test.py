@@ -102,8 +102,8 @@ class Everything(Figures):
 
     def curves(self, file):
         figure = json.loads((self.folder / "figures/mean-height.json").read_text())
-        self.assertRegex(figure["origin"], r"^Data: everything\.h5: 48 spheres in .* diameters; 3 realizations per sweep "
-                                r"point\. Drawn by jostle ")
+        self.assertRegex(figure["origin"], r"^Data: everything\.h5: 48 spheres in .* diameters; 3 realizations "
+                                           r"per sweep point\. Drawn by jostle ")
         series = self.data("mean-height")
         points = ["ε = 0.02", "ε = 0.05", "ε = 0.1"]
         self.assertEqual([name for name, _, _ in series],
