@@ -4,24 +4,12 @@
 #include "fitting/fit.hpp"
 #include "fitting/models/models.hpp"
 #include "fitting/report.hpp"
+#include "tests/fitting/line_law.hpp"
 #include "tests/fitting/noise.hpp"
 
 // Errors of curves with a sigma column: known where it is right, whatever the units.
 namespace jostle {
 namespace {
-
-class Line final : public Model {
- public:
-  std::string name() const override { return "line"; }
-  std::string formula() const override { return "a + b t"; }
-  const std::vector<Parameter>& parameters() const override {
-    static const std::vector<Parameter> list = {
-        {.name = "a", .meaning = "intercept", .unit = ParameterUnit::value, .linear = true},
-        {.name = "b", .meaning = "slope", .unit = ParameterUnit::value_per_time, .linear = true}};
-    return list;
-  }
-  double value(double t, const double* p) const override { return p[0] + p[1] * t; }
-};
 
 constexpr double slope = 0.5;
 

@@ -5,23 +5,11 @@
 #include "fitting/fit.hpp"
 #include "fitting/intervals/diagnostics.hpp"
 #include "fitting/intervals/distributions.hpp"
+#include "tests/fitting/line_law.hpp"
 #include "tests/fitting/noise.hpp"
 
 namespace jostle {
 namespace {
-
-/// A straight line: every number of the report is known in closed form.
-class Line final : public Model {
- public:
-  std::string name() const override { return "line"; }
-  const std::vector<Parameter>& parameters() const override {
-    static const std::vector<Parameter> list = {
-        {.name = "a", .meaning = "intercept", .unit = ParameterUnit::value, .linear = true},
-        {.name = "b", .meaning = "slope", .unit = ParameterUnit::value_per_time, .linear = true}};
-    return list;
-  }
-  double value(double t, const double* p) const override { return p[0] + p[1] * t; }
-};
 
 // y = 1, 3, 2, 5 at t = 0, 1, 2, 3 by hand.
 const Curve by_hand = {{0, 1, 2, 3}, {1, 3, 2, 5}, {}};
