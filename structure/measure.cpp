@@ -44,9 +44,9 @@ void require_region(const MeasuredPacking& in) {
 /// Parts that are defined for spheres of several sizes.
 template <class Settings>
 constexpr bool takes_sizes =
-    std::is_same_v<Settings, ProfileSettings> || std::is_same_v<Settings, CoordinationSettings> ||
-    std::is_same_v<Settings, GapsSettings> || std::is_same_v<Settings, PairsSettings> ||
-    std::is_same_v<Settings, VoronoiSettings>;
+    std::is_same_v<Settings, ProfileSettings> || std::is_same_v<Settings, SidesSettings> ||
+    std::is_same_v<Settings, CoordinationSettings> || std::is_same_v<Settings, GapsSettings> ||
+    std::is_same_v<Settings, PairsSettings> || std::is_same_v<Settings, VoronoiSettings>;
 
 template <class Settings>
 void add_part(const char* name, MeasuredPacking& in, const std::optional<Settings>& settings,

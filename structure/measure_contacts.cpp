@@ -44,6 +44,69 @@ Contacts contacts_within(const MeasuredPacking& in, const NeighbourTable& near, 
   return {all / spheres, rattlers / spheres, contacts / (spheres - rattlers)};
 }
 
+/// Gaps between the region's spheres and their neighbours, in sums of radii. Each counts as if
+/// sides cut no shell.
+struct Gaps {
+  std::vector<double> sizes, weights;
+
+  double exponent(double low, double high) const { return gap_exponent(sizes, low, high, weights); }
+};
+
+/// Calls add(i, j, gap, weight) for every neighbour j of a sphere i of the region.
+template <class Add>
+void for_each_gap(const MeasuredPacking& in, const NeighbourTable& near, Add&& add) {
+  const ShellPart part(in.packing.container);
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (!in.in_region(i)) continue;
+    for (const Neighbour& neighbour : near.of(i)) {
+      const double scaled = std::sqrt(neighbour.distance_squared);
+      const double partner = in.packing.radius(neighbour.sphere);
+      const double distance = scaled * (in.packing.radius(i) + partner);
+      add(i, neighbour.sphere, scaled - 1, 1 / part(in.packing.centres[i], distance, partner));
+    }
+  }
+}
+
+Gaps all_gaps(const MeasuredPacking& in, const NeighbourTable& near) {
+  Gaps gaps;
+  for_each_gap(in, near, [&](std::size_t, std::size_t, double gap, double weight) {
+    gaps.sizes.push_back(gap);
+    gaps.weights.push_back(weight);
+  });
+  return gaps;
+}
+
+/// Exponents of the gaps of each two kinds, in the order of KindPairs.
+void add_exponents_of_pairs(const MeasuredPacking& in, const NeighbourTable& near,
+                            HeightWindow window, Measurement& out) {
+  const Sizes& sizes = *in.packing.sizes;
+  const std::size_t n_kinds = sizes.kinds().size();
+  std::vector<Gaps> of_pair(n_kinds * n_kinds);
+  for_each_gap(in, near, [&](std::size_t i, std::size_t j, double gap, double weight) {
+    Gaps& gaps = of_pair[sizes.kind(i) * n_kinds + sizes.kind(j)];
+    gaps.sizes.push_back(gap);
+    gaps.weights.push_back(weight);
+  });
+  std::vector<double> exponents, counts;
+  for (const Gaps& gaps : of_pair) {
+    exponents.push_back(gaps.exponent(window.low, window.high));
+    counts.push_back(static_cast<double>(std::ranges::count_if(
+        gaps.sizes, [&](double gap) { return gap >= window.low && gap <= window.high; })));
+  }
+  out.quantities.push_back(
+      {.name = "gap_exponent_of_pair",
+       .places = "pair",
+       .values = std::move(exponents),
+       .long_name = "gamma of g_ij(1 + h) as h^-gamma, gaps in the window from spheres of the "
+                    "first kind to those of the second",
+       .with_packings = true});
+  out.quantities.push_back({.name = "gaps_of_pair",
+                            .places = "pair",
+                            .values = std::move(counts),
+                            .long_name = "gaps in the window, of all packings",
+                            .pooling = Pooling::sum});
+}
+
 /// Contacts with spheres within the tolerance by kinds, and rattlers by kind.
 void add_kinds(const MeasuredPacking& in, const NeighbourTable& near, double tolerance,
                unsigned least, Measurement& out) {
@@ -100,16 +163,7 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
   const NeighbourTable near = neighbours_within_contacts(in.packing, 1 + reach);
   const auto least = static_cast<unsigned>(
       settings.least_contacts.value_or(least_contacts_of(in.packing.container)));
-  const ShellPart part(in.packing.container);
-  std::vector<double> gaps, weights;  // shells that sides cut count as if they were whole
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    if (in.packing.sizes || !in.in_region(i)) continue;
-    for (const Neighbour& neighbour : near.of(i)) {
-      const double distance = std::sqrt(neighbour.distance_squared);
-      gaps.push_back(distance - 1);
-      weights.push_back(1 / part(in.packing.centres[i], distance));
-    }
-  }
+  const Gaps gaps = all_gaps(in, near);
   std::vector<double> all, rattlers, without, exponents;
   for (const double gap : grid) {
     const Contacts found = contacts_within(in, near, gap, least);
@@ -117,7 +171,7 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
     rattlers.push_back(rattlers_of_backbone(found));
     without.push_back(found.without_rattlers);
     exponents.push_back(gap > 0 && gap < 0.7 * settings.window.high
-                            ? gap_exponent(gaps, gap, settings.window.high, weights)
+                            ? gaps.exponent(gap, settings.window.high)
                             : std::nan(""));
   }
   const Contacts found = contacts_within(in, near, settings.tolerance, least);
@@ -148,7 +202,7 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
        .values = exponents,
        .long_name = "gamma of g(1 + h) as h^-gamma, from this gap to the window's end"},
       {.name = "gap_exponent",
-       .values = {gap_exponent(gaps, settings.window.low, settings.window.high, weights)},
+       .values = {gaps.exponent(settings.window.low, settings.window.high)},
        .long_name =
            "gamma of g(1 + h) as h^-gamma, gaps in the window; no value for fewer than ten, or "
            "if all have one size"},
@@ -170,11 +224,8 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
                {"tolerance", tolerance_note(settings.tolerance,
                                             in.packing.sizes ? " of the sum of radii" : " d")}};
   if (in.packing.sizes) {
-    std::erase_if(out.quantities, [](const MeasuredQuantity& quantity) {
-      return quantity.name == "exponent_from_gap" || quantity.name == "gap_exponent";
-    });
-    out.notes.emplace_back("gap_exponent", "measures of the exponent require equal spheres");
     add_kinds(in, near, settings.tolerance, least, out);
+    add_exponents_of_pairs(in, near, settings.window, out);
   }
   return out;
 }

@@ -31,9 +31,9 @@ double segregation(const Packing& packing, std::uint32_t large, std::uint32_t sm
 /// whole numbers of cells of about `cell` diameters; a sphere belongs to the cell of its centre.
 /// S^2 is the variance of the kind's share over cells, each weighted by its spheres; S_0^2 = p (1 -
 /// p) where all cells are pure. S_R^2 = p (1 - p) (K - 1)/(N - 1), for K cells with spheres, is its
-/// expectation where the N spheres are labelled at random: the numbers in cells are then
-/// hypergeometric (Gu & Chen, Chem. Eng. Res. Des. 93, 293, 2015). NaN where the kind has all
-/// spheres or none, or no cell has two.
+/// expectation where the N spheres are labelled at random: the number in a cell of n spheres is
+/// then hypergeometric, its share has the variance p (1 - p) (N - n)/(n (N - 1)), and the mean over
+/// cells weighted by n/N is S_R^2. NaN where the kind has all spheres or none, or no cell has two.
 double lacey_index(const Packing& packing, std::uint32_t kind, double cell);
 
 }  // namespace jostle::inline structure

@@ -69,7 +69,7 @@ struct Label {
          << (index.kind ? "kind " + *index.kind : "the kind of the largest mean diameter")
          << " on cells of " << index.cell << " d; its random state has fixed numbers of spheres";
     return {std::string(LaceyIndex::about.name) + suffix(index.kind), "1", text.str(),
-            "Gu & Chen 2014, Chem. Eng. Res. Des."};
+            "jostle"};
   }
 
  private:

@@ -30,14 +30,16 @@ Profile radial_profile(const Packing& packing, std::span<const double> edges, He
   Profile profile = empty_profile(edges, 0, axis, [&](double distance) {
     return std::numbers::pi * distance * distance * depth;
   });
-  for (const Vec3& centre : packing.centres) {
-    const double low = window.low - centre.z, high = window.high - centre.z;
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    const Vec3 centre = packing.centres[i];
+    const double own_radius = packing.radius(i), d = 2 * own_radius;
+    const double low = (window.low - centre.z) / d, high = (window.high - centre.z) / d;
     if (low >= sphere_radius || high <= -sphere_radius) continue;
     const double dx = centre.x - axis, dy = centre.y - axis;
     const double offset = std::sqrt(dx * dx + dy * dy);
     // A sphere over the axis reaches all around it, from 0.
-    share_out(profile, offset - sphere_radius, offset + sphere_radius, [&](double edge) {
-      return sphere_volume_in_tube(offset, std::max(0.0, edge), low, high);
+    share_out(profile, offset - own_radius, offset + own_radius, [&](double edge) {
+      return d * d * d * sphere_volume_in_tube(offset / d, std::max(0.0, edge) / d, low, high);
     });
   }
   divide_by_volumes(profile);

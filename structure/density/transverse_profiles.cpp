@@ -40,11 +40,11 @@ Boundary walls_of(const Packing& packing) {
 
 // Calls act(place) for the sphere along the axis and, where it reaches through a seam, its image.
 template <class Act>
-void for_each_image(double place, const Footprint& box, Act&& act) {
+void for_each_image(double place, double own_radius, const Footprint& box, Act&& act) {
   act(place);
   if (!box.periodic) return;
-  if (place < sphere_radius) act(place + box.width);
-  if (place > box.width - sphere_radius) act(place - box.width);
+  if (place < own_radius) act(place + box.width);
+  if (place > box.width - own_radius) act(place - box.width);
 }
 
 double along(Vec3 centre, Axis axis) {
@@ -60,13 +60,17 @@ Profile transverse_profile(const Packing& packing, Axis axis, std::span<const do
   const double section = box.depth * (window.high - window.low);
   Profile profile =
       empty_profile(edges, 0, box.width, [&](double place) { return section * place; });
-  for (const Vec3& centre : packing.centres) {
-    const double low = window.low - centre.z, high = window.high - centre.z;
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    const Vec3 centre = packing.centres[i];
+    const double own_radius = packing.radius(i), d = 2 * own_radius;
+    const double low = (window.low - centre.z) / d, high = (window.high - centre.z) / d;
     if (low >= sphere_radius || high <= -sphere_radius) continue;
-    for_each_image(along(centre, axis), box, [&](double place) {
-      share_out(profile, place - sphere_radius, place + sphere_radius, [&](double edge) {
+    for_each_image(along(centre, axis), own_radius, box, [&](double place) {
+      share_out(profile, place - own_radius, place + own_radius, [&](double edge) {
         // By symmetry the part below the edge is the part beyond its mirror image.
-        return sphere_volume_beyond(place - edge, low) - sphere_volume_beyond(place - edge, high);
+        const double mirrored = (place - edge) / d;
+        return d * d * d *
+               (sphere_volume_beyond(mirrored, low) - sphere_volume_beyond(mirrored, high));
       });
     });
   }
@@ -96,9 +100,11 @@ std::vector<double> transverse_cuts(const Packing& packing, Axis axis,
   fractions.reserve(places.size());
   for (const double place : places) {
     double area = 0;
-    for (const Vec3& centre : packing.centres) {
-      for_each_image(along(centre, axis), box, [&](double image) {
-        const double squared = 0.25 - (image - place) * (image - place);
+    for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+      const Vec3 centre = packing.centres[i];
+      const double own_radius = packing.radius(i);
+      for_each_image(along(centre, axis), own_radius, box, [&](double image) {
+        const double squared = own_radius * own_radius - (image - place) * (image - place);
         if (squared <= 0) return;
         area +=
             disc_area_in_strip(std::sqrt(squared), window.low - centre.z, window.high - centre.z);
@@ -113,7 +119,7 @@ Profile wall_profile(const Packing& packing, std::span<const double> edges, Heig
   const Boundary box = walls_of(packing);
   require_window(window);
   constexpr double beyond =
-      1;  // distance from a sphere's middle that contains all of it, also at a seam
+      1;  // in its diameters from a sphere's middle: contains all of it, also at a seam
   const bool x = box.planes_x(), y = box.planes_y();
   const double deepest = 0.5 * (x && y ? std::min(box.width_x, box.width_y)
                                 : x    ? box.width_x
@@ -122,18 +128,21 @@ Profile wall_profile(const Packing& packing, std::span<const double> edges, Heig
   Profile profile = empty_profile(edges, 0, deepest, [&](double distance) {
     return depth * (box.width_x * box.width_y - footprint_area(box, distance));
   });
-  for (const Vec3& centre : packing.centres) {
-    const double low = window.low - centre.z, high = window.high - centre.z;
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    const Vec3 centre = packing.centres[i];
+    const double own_radius = packing.radius(i), d = 2 * own_radius, cube = d * d * d;
+    const double low = (window.low - centre.z) / d, high = (window.high - centre.z) / d;
     if (low >= sphere_radius || high <= -sphere_radius) continue;
-    const double whole = sphere_volume_in_slab(0, low, high);
+    const double whole = cube * sphere_volume_in_slab(0, low, high);
     const double distance = std::min(x ? std::min(centre.x, box.width_x - centre.x) : deepest,
                                      y ? std::min(centre.y, box.width_y - centre.y) : deepest);
-    share_out(profile, distance - sphere_radius, distance + sphere_radius, [&](double edge) {
+    share_out(profile, distance - own_radius, distance + own_radius, [&](double edge) {
       const double right = box.width_x - edge, back = box.width_y - edge;
       if ((x && right <= edge) || (y && back <= edge)) return whole;
-      return whole - sphere_volume_in_box(
-                         {x ? edge - centre.x : -beyond, y ? edge - centre.y : -beyond, low},
-                         {x ? right - centre.x : beyond, y ? back - centre.y : beyond, high});
+      return whole - cube * sphere_volume_in_box({x ? (edge - centre.x) / d : -beyond,
+                                                  y ? (edge - centre.y) / d : -beyond, low},
+                                                 {x ? (right - centre.x) / d : beyond,
+                                                  y ? (back - centre.y) / d : beyond, high});
     });
   }
   divide_by_volumes(profile);

@@ -184,12 +184,13 @@ std::vector<Vec3> even_directions(int n) {
 ShellPart::ShellPart(const Container& container)
     : boundary_(container), directions_(even_directions(500)) {}
 
-double ShellPart::operator()(Vec3 centre, double radius) const {
-  // boundary_depth() is how deep a sphere reaches beyond floor or sides.
-  if (boundary_depth(boundary_, centre) <= -radius) return 1;
+double ShellPart::operator()(Vec3 centre, double radius, double partner_radius) const {
+  // boundary_depth() is how deep a sphere of diameter 1 reaches beyond floor or sides.
+  const double deepest = sphere_radius - partner_radius;
+  if (boundary_depth(boundary_, centre) <= deepest - radius) return 1;
   double inside = 0;
   for (const Vec3& direction : directions_) {
-    inside += boundary_depth(boundary_, centre + radius * direction) <= 0 ? 1 : 0;
+    inside += boundary_depth(boundary_, centre + radius * direction) <= deepest ? 1 : 0;
   }
   return std::max(inside, 1.0) / static_cast<double>(directions_.size());
 }

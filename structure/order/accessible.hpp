@@ -93,13 +93,13 @@ class FootprintShares {
 /// Unit vectors that are evenly spread over all directions, on a Fibonacci spiral.
 std::vector<Vec3> even_directions(int n);
 
-/// The part of spheres around a centre in the region of possible centres: at least 1/2 from floor
-/// and walls.
+/// The part of spheres around a centre in the region of possible centres of partners: at least the
+/// radius of a partner from floor and walls.
 class ShellPart {
  public:
   explicit ShellPart(const Container& container);
   /// In (0, 1], by 500 directions; 1 of a sphere that no side cuts.
-  double operator()(Vec3 centre, double radius) const;
+  double operator()(Vec3 centre, double radius, double partner_radius = sphere_radius) const;
 
  private:
   Boundary boundary_;
