@@ -13,7 +13,7 @@ namespace jostle::bench {
 enum class StandardState {
   tapped_bed,  // poured, dilated by 0.02, relaxed by the polar move to eta 1e-5 per 100 sweeps
   lifted_bed,  // poured, lifted by 0.25, relaxed by Metropolis at zero temperature
-  dense_60,    // disordered fluid squeezed to a solids fraction of 0.60; Metropolis, 0.1 d
+  dense_60,    // disordered fluid squeezed to a packing fraction of 0.60; Metropolis, 0.1 d
   fluid_55,    // grown to 0.55, 200 sweeps of the same move
   fluid_45,    // the fluid at 0.45
 };

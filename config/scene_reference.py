@@ -10,10 +10,10 @@ SCHEMA = json.load(sys.stdin)
 PAGE = ROOT / "docs/reference/scene-keys.md"
 HEAD = """# Scene reference
 
-Every key of a scene, as the schema has it (`jostle schema`); [scene.md](scene.md) explains what they mean
-and go with. `./dev scene-reference` makes this page of the schema. In a path, `[]` is an element of a
-list. A key that is neither required nor has a default may be absent, and is then not there: "required in
-its form" is one of those that make one of several forms of its object.
+This page lists every key of a scene with type, range and default. [scene.md](scene.md) explains the keys.
+`./dev scene-reference` makes the page of the schema (`jostle schema`). In a path, `[]` is an element of a
+list. A key without a default that is not required may be omitted. "Required in its form": the object has
+several forms, and the key belongs to one of them.
 """
 
 
@@ -37,7 +37,8 @@ def variants(schema):
 
 
 def number(value):
-    return f"{value:g}" if isinstance(value, float) and value < 2**63 else str(int(value))
+    exact = not isinstance(value, float) or 2**63 <= value <= 2**64  # the schema has seeds as numbers with a point
+    return str(int(value)) if exact else f"{value:g}"
 
 
 def limits(schema):

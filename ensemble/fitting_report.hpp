@@ -10,7 +10,7 @@ struct FittingReport {
   double mean_rise = 0;  // mean rise of the moved spheres, diameters; 0 where none moved
   /// <Phi_c> of the periodic pour and of the fitted one: CorrectedFraction.
   double corrected_fraction_before = 0, corrected_fraction_after = 0;
-  /// Solids fraction away from the walls, by 7 R or, if that is less, a quarter of the smaller
+  /// Packing fraction away from the walls, by 7 R or, if that is less, a quarter of the smaller
   /// width, between the heights of transverse_window() of the periodic pour. NaN of a bed too
   /// shallow for it.
   double central_fraction_before = 0, central_fraction_after = 0;

@@ -25,17 +25,17 @@ struct MeanHeight {
   static constexpr auto fields() { return std::tuple{}; }
 };
 
-/// Phi_b, solids fraction between z = 0 and 4 R = 2 diameters. Philippe & Bideau 2001, sec. III.
+/// Phi_b, packing fraction between z = 0 and 4 R = 2 diameters. Philippe & Bideau 2001, sec. III.
 struct BottomFraction {
   bool operator==(const BottomFraction&) const = default;
 
   static constexpr About about{.name = "bottom_fraction",
-                               .text = "Phi_b, solids fraction between the floor and 2 diameters",
+                               .text = "Phi_b, packing fraction between the floor and 2 diameters",
                                .symbol = "Φ_b"};
   static constexpr auto fields() { return std::tuple{}; }
 };
 
-/// <Phi_c>, solids fraction from the floor to h = `depth` x 2<Z> ("approximately 90 %" of the
+/// <Phi_c>, packing fraction from the floor to h = `depth` x 2<Z> ("approximately 90 %" of the
 /// packing, Philippe & Bideau 2001, sec. III; <Z> is that of the same packing, so the window
 /// follows the bed as it compacts), with the solid volume between z = 0 and R multiplied by 16/11,
 /// the deficit that a plane wall makes: (V(0, h) + 5/11 V(0, R)) / (footprint area x h), V being
@@ -47,14 +47,14 @@ struct CorrectedFraction {
 
   static constexpr About about{
       .name = "corrected_fraction",
-      .text = "<Phi_c>, solids fraction up to depth x 2<Z>, corrected at the floor by 16/11",
+      .text = "<Phi_c>, packing fraction up to depth x 2<Z>, corrected at the floor by 16/11",
       .symbol = "⟨Φ_c⟩"};
   static constexpr auto fields() {
     return std::tuple{field("depth", &CorrectedFraction::depth, Number{above(0, 1)})};
   }
 };
 
-/// Solids fraction between two heights, or two height quantiles of the starting packing.
+/// Packing fraction between two heights, or two height quantiles of the starting packing.
 /// Rosato et al. 2010 ("bulk solids fraction"). `taper`, diameters, at least 0: over what height
 /// its edges rise and fall (tapered_solids_fraction); 0 cuts layers sharply, as the paper.
 struct BulkFraction {
@@ -64,7 +64,7 @@ struct BulkFraction {
   bool operator==(const BulkFraction&) const = default;
 
   static constexpr About about{.name = "bulk_fraction",
-                               .text = "Solids fraction between two heights or height quantiles"};
+                               .text = "Packing fraction between two heights or height quantiles"};
   static constexpr auto fields() {
     return std::tuple{
         field(

@@ -5,7 +5,7 @@
 
 #include "engine/fields.hpp"
 
-// Horizontal slices of a bed, in which solids fractions are taken.
+// Horizontal slices of a bed, in which packing fractions are taken.
 namespace jostle::inline engine {
 
 /// Between two heights above the floor, diameters.

@@ -54,7 +54,7 @@ struct HeightChangeStop {
   }
 };
 
-/// Stop when the solids fraction in `window` changes by at most `change` between two measurements
+/// Stop when the packing fraction in `window` changes by at most `change` between two measurements
 /// `every_trials` apart, `times` times in a row. Rosato et al. 2010, sec. II: change = 0.001,
 /// 1e6 trials, twice. It can stop a bed in mid-air.
 struct BulkFractionStop {
@@ -67,7 +67,7 @@ struct BulkFractionStop {
 
   static constexpr About about{
       "bulk_fraction",
-      "The solids fraction of a window changed by at most change, several times in a row (Rosato "
+      "The packing fraction of a window changed by at most change, several times in a row (Rosato "
       "et al. 2010). Can stop a bed in mid-air"};
   static constexpr auto fields() {
     return std::tuple{

@@ -77,7 +77,7 @@ class TrialLoop {
   virtual double mean_height() const = 0;
   /// Those of the kinds of a mixture, as kind_heights() of the packing gives them.
   virtual std::vector<double> kind_heights() const { return {}; }
-  /// Solids fraction between two heights (engine/bed/slab.hpp).
+  /// Packing fraction between two heights (engine/bed/slab.hpp).
   virtual double solids_fraction(HeightWindow window) const = 0;
   virtual std::uint32_t n_spheres() const = 0;
   virtual const MoveState& state() const = 0;

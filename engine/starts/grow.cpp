@@ -112,7 +112,7 @@ std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, const Sta
                      std::to_string(n_spheres) + " spheres did not reach " +
                      (wanted.sizes ? "their diameter" : "diameter 1") + " in " +
                      std::to_string(start.max_sweeps) +
-                     " sweeps; raise max_sweeps or lower the solids fraction (" +
+                     " sweeps; raise max_sweeps or lower the packing fraction (" +
                      std::to_string(fraction) + ")");
   }
   return spheres.centres();

@@ -101,7 +101,7 @@ std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container
     if (!placed) {
       throw StartError("random settle: no free place for sphere " + std::to_string(sphere) +
                        " of " + std::to_string(spheres.n) + " in " + std::to_string(max_draws) +
-                       " draws, the container is too narrow for this solids fraction; lower "
+                       " draws, the container is too narrow for this packing fraction; lower "
                        "dilute_fraction (now " +
                        std::to_string(settle.dilute_fraction) + ")");
     }

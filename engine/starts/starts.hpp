@@ -40,12 +40,12 @@ struct FittedPour {
   static constexpr auto fields() { return std::tuple{}; }
 };
 
-/// Solids fraction up to which random places that do not overlap are found one after another: such
+/// Packing fraction up to which random places that do not overlap are found one after another: such
 /// beds jam at 0.384 (random sequential addition; Zhang & Torquato 2013).
 inline constexpr double densest_dilution = 0.36;
 inline constexpr double highest_drop = 1000;  // diameters
 
-/// Non-overlapping random positions at the given solids fraction, of a mixture the largest spheres
+/// Non-overlapping random positions at the given packing fraction, of a mixture the largest spheres
 /// first, then a relaxation without a tap (the scene's own). Rosato et al. 2010, sec. II.
 struct RandomSettle {
   double dilute_fraction = 0.1;  // at most densest_dilution
@@ -58,7 +58,7 @@ struct RandomSettle {
   static constexpr auto fields() {
     return std::tuple{
         field("dilute_fraction", &RandomSettle::dilute_fraction, Number{above(0, densest_dilution)},
-              "Solids fraction of the dilute box"),
+              "Packing fraction of the dilute box"),
         field("drop_height", &RandomSettle::drop_height,
               Number{between(0, highest_drop), "diameters"},
               "Height of the dilute box's foot above the floor", {.unless_default = true})};
@@ -99,7 +99,7 @@ struct Crystal {
 inline constexpr std::uint64_t most_growth_sweeps = 1'000'000'000;
 
 /// Random points whose diameters grow by Monte Carlo, those of a mixture by one factor, until the
-/// spheres fill the fully periodic box; at most solids fraction 0.64. From 0.61 on it grows slowly
+/// spheres fill the fully periodic box; at most packing fraction 0.64. From 0.61 on it grows slowly
 /// and may leave a residue after `max_sweeps`, an error.
 struct Grow {
   std::uint64_t max_sweeps = 1'000'000;
@@ -127,7 +127,7 @@ using Start =
 
 /// Packings of discrete elements may be given with such overlaps: deeper ones end a tap.
 inline constexpr double deepest_given_overlap = 0.1;
-/// Spheres that grow without order jam beyond this solids fraction.
+/// Spheres that grow without order jam beyond this packing fraction.
 inline constexpr double densest_growth = 0.64;
 
 /// The order in which the spheres of a mixture are poured. Their numbers are those of the list of

@@ -63,7 +63,7 @@ VoidProbability void_probability(const Packing& packing, const Region& region,
                                  std::span<const double> sigma, std::uint64_t points,
                                  StreamKey key);
 
-/// P0 of the Percus-Yevick fluid of solids fraction phi: Gotoh's result, Philippe & Bideau
+/// P0 of the Percus-Yevick fluid of packing fraction phi: Gotoh's result, Philippe & Bideau
 /// 2001, eqs. 8 and 9 with the sign of eq. 9's 2 phi corrected (as printed it jumps at sigma = 1).
 double gotoh_void_probability(double phi, double sigma);
 

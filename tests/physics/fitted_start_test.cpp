@@ -50,7 +50,7 @@ PoreVolumes pore_volumes(const Packing& packing, double from_walls) {
   return {mean_pore_volume(chosen), tail.mean()};
 }
 
-// Solids fraction farther than 7 R from every wall.
+// Packing fraction farther than 7 R from every wall.
 double middle_fraction(const Packing& packing) {
   const std::array<double, 2> edges{7 * sphere_radius, 0.5 * walls.width_x};
   return wall_profile({walls, packing.centres}, edges, {1, 10}).values.at(0);
