@@ -29,6 +29,7 @@ std::vector<std::uint64_t> snapshot_taps(const SnapshotChoice& choice, std::uint
 
 /// Returns the waiting times and lags for so many taps. Default grids begin alike for any number of
 /// taps, so that a run can be resumed with more.
-MotionSettings motion_settings(const MotionChoice& choice, std::uint64_t taps);
+MotionSettings motion_settings(const MotionChoice& choice, std::uint64_t taps,
+                               std::size_t n_kinds = 0);
 
 }  // namespace jostle::inline config

@@ -52,6 +52,13 @@ class StartMaker {
   std::map<PackingFile, LoadedPacking> loaded_;
 };
 
+/// Kinds of the mixture, drawn or of a file; 0 of equal spheres.
+std::size_t n_kinds(const Plan& plan) {
+  const auto* given = std::get_if<GivenPacking>(&plan.start);
+  if (given == nullptr) return plan.kinds.size();
+  return given->sizes ? given->sizes->kinds().size() : 0;
+}
+
 Snapshots snapshots(const SnapshotChoice& choice, std::uint64_t taps) {
   return {.taps = snapshot_taps(choice, taps),
           .positions = choice.positions,
@@ -108,7 +115,7 @@ std::vector<Plan> make_plans(const Scene& scene, const std::vector<Scene>& point
     plan.engine = engine_of(here);
     plan.observables = here.observables;
     plan.snapshots = snapshots(here.snapshots, total_taps(here.protocol));
-    if (here.motion) plan.motion = motion_settings(*here.motion, total_taps(plan));
+    if (here.motion) plan.motion = motion_settings(*here.motion, total_taps(plan), n_kinds(plan));
     plans.push_back(std::move(plan));
   }
   return plans;

@@ -61,11 +61,13 @@ void check_amounts(const MotionSettings& settings, const Scene& scene, std::vect
 
 }  // namespace
 
-MotionSettings motion_settings(const MotionChoice& choice, std::uint64_t taps) {
+MotionSettings motion_settings(const MotionChoice& choice, std::uint64_t taps,
+                               std::size_t n_kinds) {
   MotionSettings settings{.origins = {},
                           .lags = {},
                           .overlap_lengths = choice.overlap_lengths,
-                          .layers = choice.layers};
+                          .layers = choice.layers,
+                          .kinds = n_kinds > 1 ? static_cast<std::uint32_t>(n_kinds) : 0};
   if (taps == 0) return settings;
   settings.origins = taps_or(
       choice.origins, {.from = 1, .to = taps - 1, .per_decade = origins_a_decade, .also = {0}});
@@ -81,7 +83,7 @@ void check_motion(const Scene& scene, std::vector<Fault>& faults) {
         {"/motion", "needs a tap, but the protocol has none: leave it out, or add a tap"});
     return;
   }
-  const MotionSettings settings = motion_settings(*scene.motion, taps);
+  const MotionSettings settings = motion_settings(*scene.motion, taps, scene.kinds.size());
   TapCheck("/motion/origins", taps, faults)(settings.origins, 0);
   TapCheck("/motion/lags", taps, faults)(settings.lags, 1);
   if (!sound(faults, "/spheres")) return;

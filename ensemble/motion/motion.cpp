@@ -83,6 +83,19 @@ void append(std::vector<double>& values, std::span<const double> sums, double n)
   for (const double sum : sums) values.push_back(sum / n);
 }
 
+/// Displacements and their squares, kind by kind.
+void append_kinds(const MotionSettings& settings, std::span<const Vec3> reference,
+                  std::span<const Vec3> now, std::span<const std::uint32_t> kinds,
+                  std::vector<double>& values) {
+  if (settings.kinds == 0) return;
+  assert(kinds.size() == now.size());
+  std::vector<Sums> of_kinds(settings.kinds, Sums(0));
+  for (std::size_t i = 0; i < now.size(); ++i)
+    of_kinds[kinds[i]].add(along(now[i] - reference[i]), {});
+  for (const Sums& kind : of_kinds) append(values, kind.steps, kind.n);
+  for (const Sums& kind : of_kinds) append(values, kind.squares, kind.n);
+}
+
 }  // namespace
 
 std::size_t n_places(MotionPlaces places, const MotionSettings& settings) {
@@ -99,6 +112,8 @@ std::size_t n_places(MotionPlaces places, const MotionSettings& settings) {
       return n_directions * settings.layers;
     case MotionPlaces::layer_overlap_lengths:
       return settings.overlap_lengths.size() * settings.layers;
+    case MotionPlaces::kind_directions:
+      return n_directions * settings.kinds;
   }
   return 0;
 }
@@ -153,8 +168,8 @@ std::vector<std::uint64_t> layer_sizes(std::uint64_t n_spheres, std::uint32_t n_
 }
 
 std::vector<double> motion_values(const MotionSettings& settings, std::span<const Vec3> reference,
-                                  std::span<const Vec3> now,
-                                  std::span<const std::uint32_t> layers) {
+                                  std::span<const Vec3> now, std::span<const std::uint32_t> layers,
+                                  std::span<const std::uint32_t> kinds) {
   assert(reference.size() == now.size() && layers.size() == now.size());
   const std::vector<double>& lengths = settings.overlap_lengths;
   Sums bed(lengths.size());
@@ -179,6 +194,7 @@ std::vector<double> motion_values(const MotionSettings& settings, std::span<cons
   for (const Sums& layer : of_layers) values.push_back(layer.vertical_quartic / layer.n);
   for (const Sums& layer : of_layers) append(values, layer.lateral_overlap, layer.n);
   for (const Sums& layer : of_layers) append(values, layer.overlap, layer.n);
+  append_kinds(settings, reference, now, kinds, values);
   return values;
 }
 
@@ -189,11 +205,13 @@ void follow_motion(const MotionSettings& settings, const Packing& bed, std::uint
     state.unwrapped = bed.centres;
   }
   unwrap(bed, state);
+  std::span<const std::uint32_t> kinds;
+  if (settings.kinds > 0) kinds = bed.sizes->kind_of();
   for (MotionOrigin& origin : state.origins) {
     if (!std::ranges::binary_search(settings.lags, tap - origin.tap)) continue;
     const std::vector<double> values =
         motion_values(settings, origin.centres, state.unwrapped,
-                      layers_of(heights_of(origin.centres, bed.container), settings.layers));
+                      layers_of(heights_of(origin.centres, bed.container), settings.layers), kinds);
     origin.values.insert(origin.values.end(), values.begin(), values.end());
   }
   if (std::ranges::binary_search(settings.origins, tap))

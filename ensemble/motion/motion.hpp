@@ -25,6 +25,7 @@ struct MotionSettings {
   std::vector<std::uint64_t> lags;      // taps, ascending, at least 1
   std::vector<double> overlap_lengths;  // a, diameters, ascending, above 0
   std::uint32_t layers = 0;  // layers of equal numbers of spheres, by their height at the origin
+  std::uint32_t kinds = 0;   // kinds of a mixture; 0: not followed by kind
   bool operator==(const MotionSettings&) const = default;
 };
 
@@ -35,7 +36,8 @@ enum class MotionPlaces {
   overlap_lengths,
   layers,
   layer_directions,
-  layer_overlap_lengths
+  layer_overlap_lengths,
+  kind_directions
 };
 
 /// An average over the spheres of a bed, or of a layer, of their displacements r(t_W + t) - r(t_W).
@@ -70,7 +72,11 @@ inline constexpr MotionQuantity motion_quantities[] = {
     {"layer_lateral_overlap", MotionPlaces::layer_overlap_lengths, "1",
      "fraction of spheres of the layer that moved less than overlap_length sideways", ""},
     {"layer_overlap", MotionPlaces::layer_overlap_lengths, "1",
-     "fraction of spheres of the layer that moved less than overlap_length", ""}};
+     "fraction of spheres of the layer that moved less than overlap_length", ""},
+    {"kind_mean_displacement", MotionPlaces::kind_directions, "diameter",
+     "mean displacement of the kind over the lag along x, y, z", ""},
+    {"kind_square_displacement", MotionPlaces::kind_directions, "diameter^2",
+     "mean square displacement of the kind over the lag along x, y, z", ""}};
 
 /// Values of a quantity at one origin and lag.
 std::size_t n_places(MotionPlaces places, const MotionSettings& settings);
@@ -116,8 +122,11 @@ std::vector<std::uint32_t> layers_of(std::span<const double> heights, std::uint3
 /// Spheres of each layer of n: [n_layers].
 std::vector<std::uint64_t> layer_sizes(std::uint64_t n_spheres, std::uint32_t n_layers);
 
-/// Averages over spheres at one origin and lag: [n_motion_values]. `layers` of the reference.
+/// Averages over spheres at one origin and lag: [n_motion_values]. `layers` of the reference;
+/// `kinds` of the spheres, [n_spheres] where the settings have kinds. NaN of a kind without
+/// spheres.
 std::vector<double> motion_values(const MotionSettings& settings, std::span<const Vec3> reference,
-                                  std::span<const Vec3> now, std::span<const std::uint32_t> layers);
+                                  std::span<const Vec3> now, std::span<const std::uint32_t> layers,
+                                  std::span<const std::uint32_t> kinds = {});
 
 }  // namespace jostle::inline ensemble

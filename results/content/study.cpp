@@ -121,6 +121,12 @@ std::string utc_now() {
 
 }  // namespace
 
+std::vector<std::string> PointSpheres::names_of_kinds() const {
+  std::vector<std::string> names;
+  for (const SphereKind& kind : kinds) names.push_back(kind.name);
+  return names;
+}
+
 std::shared_ptr<const Sizes> PointSpheres::sizes(const std::vector<double>& of_realization) const {
   return std::make_shared<const Sizes>(drawn() ? of_realization : diameters, kind_of, kinds);
 }

@@ -29,6 +29,8 @@ struct PointSpheres {
   bool operator==(const PointSpheres&) const = default;
 
   bool drawn() const { return diameters.empty(); }
+  /// [n_kinds].
+  std::vector<std::string> names_of_kinds() const;
   /// With the diameters of a realization where they are drawn.
   std::shared_ptr<const Sizes> sizes(const std::vector<double>& of_realization) const;
 };

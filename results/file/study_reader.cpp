@@ -85,10 +85,13 @@ Snapshots read_snapshot_settings(hid_t group) {
 
 std::optional<MotionSettings> read_motion_settings(hid_t group) {
   if (checked(H5Aexists(group, motion_origins)) == 0) return std::nullopt;
-  return MotionSettings{.origins = read_numbers_attribute<std::uint64_t>(group, motion_origins),
-                        .lags = read_numbers_attribute<std::uint64_t>(group, motion_lags),
-                        .overlap_lengths = read_numbers_attribute<double>(group, motion_lengths),
-                        .layers = read_number_attribute<std::uint32_t>(group, motion_layers)};
+  const bool by_kind = checked(H5Aexists(group, motion_kinds)) != 0;
+  return MotionSettings{
+      .origins = read_numbers_attribute<std::uint64_t>(group, motion_origins),
+      .lags = read_numbers_attribute<std::uint64_t>(group, motion_lags),
+      .overlap_lengths = read_numbers_attribute<double>(group, motion_lengths),
+      .layers = read_number_attribute<std::uint32_t>(group, motion_layers),
+      .kinds = by_kind ? read_number_attribute<std::uint32_t>(group, motion_kinds) : 0};
 }
 
 /// /sweep/value, [n_points, n_pointers].

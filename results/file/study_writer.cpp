@@ -104,6 +104,7 @@ void write_kept(hid_t group, const StudyPoint& point) {
   write_attribute<std::uint64_t>(group, motion_lags, point.motion->lags);
   write_attribute<double>(group, motion_lengths, point.motion->overlap_lengths);
   write_attribute(group, motion_layers, point.motion->layers);
+  if (point.motion->kinds > 0) write_attribute(group, motion_kinds, point.motion->kinds);
 }
 
 /// `as`: the number of an earlier point that keeps the same, or its own.

@@ -79,6 +79,8 @@ void validate_motion(const MotionSettings& motion, const StudyPoint& point,
               motion.overlap_lengths.size() <= most_overlap_lengths && motion.layers >= 1 &&
               motion.layers <= std::min(most_motion_layers, point.n_spheres),
           name + " follows motion within lengths or in layers that are none");
+  require(motion.kinds == 0 || (point.mixture && motion.kinds == point.mixture->kinds.size()),
+          name + " follows the motion of other kinds than it has");
   require(motion_bytes(motion, point.n_spheres) <= most_motion_bytes,
           name + " follows motion from more origins than jostle does");
 }

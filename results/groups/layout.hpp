@@ -59,7 +59,8 @@ inline constexpr std::size_t n_kept_by_all = 3;
 /// Attributes of /sweep/P where the motion is followed, and the group of what was found.
 inline constexpr const char *motion_origins = "motion_origins", *motion_lags = "motion_lags",
                             *motion_lengths = "motion_overlap_lengths",
-                            *motion_layers = "motion_layers", *motion_folder = "motion";
+                            *motion_layers = "motion_layers", *motion_kinds = "motion_kinds",
+                            *motion_folder = "motion";
 
 /// Records of fitting for points that start from a fitted pour.
 inline constexpr const char* fitting_folder = "fitting";

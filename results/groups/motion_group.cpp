@@ -35,9 +35,17 @@ Shape shape_of_quantity(const MotionQuantity& quantity, const MotionRecords& rec
     case MotionPlaces::layer_overlap_lengths:
       shape.insert(shape.end(), {settings.layers, settings.overlap_lengths.size()});
       break;
+    case MotionPlaces::kind_directions:
+      shape.insert(shape.end(), {settings.kinds, n_directions});
+      break;
   }
   shape.push_back(records.n_realizations);
   return shape;
+}
+
+/// False of kinds where spheres are equal: an empty list of lengths still has its dataset.
+bool is_followed(const MotionQuantity& quantity, const MotionSettings& settings) {
+  return quantity.places != MotionPlaces::kind_directions || settings.kinds > 0;
 }
 
 Shape shape_of_heights(const MotionRecords& records) {
@@ -54,7 +62,7 @@ Hdf5Handle write_axis(hid_t group, const Column& label, const std::vector<Number
 
 class MotionWriter {
  public:
-  MotionWriter(hid_t group, const MotionRecords& records)
+  MotionWriter(hid_t group, const MotionRecords& records, std::span<const std::string> kinds)
       : group_(group),
         records_(records),
         origins_(write_axis(group,
@@ -71,6 +79,9 @@ class MotionWriter {
     const std::string names[n_directions] = {"x", "y", "z"};
     directions_ = write_texts(group, "direction", {n_directions}, names);
     make_axis(directions_, "direction");
+    if (records.settings.kinds == 0) return;
+    kinds_ = write_texts(group, "kind", {kinds.size()}, kinds);
+    make_axis(kinds_, "kind");
   }
 
   void write(const MotionQuantity& quantity, const std::vector<double>& values) {
@@ -92,6 +103,9 @@ class MotionWriter {
         break;
       case MotionPlaces::layer_overlap_lengths:
         axes.insert(axes.end(), {&layers_, &lengths_});
+        break;
+      case MotionPlaces::kind_directions:
+        axes.insert(axes.end(), {&kinds_, &directions_});
         break;
     }
     axes.push_back(&realizations_);
@@ -124,21 +138,25 @@ class MotionWriter {
 
   hid_t group_;
   const MotionRecords& records_;
-  Hdf5Handle origins_, lags_, lengths_, layers_, realizations_, directions_;
+  Hdf5Handle origins_, lags_, lengths_, layers_, realizations_, directions_, kinds_;
 };
 
 }  // namespace
 
-void write_motion_records(hid_t group, const MotionRecords& records) {
-  MotionWriter writer(group, records);
-  for (std::size_t q = 0; q < records.values.size(); ++q)
-    writer.write(motion_quantities[q], records.values[q]);
+void write_motion_records(hid_t group, const MotionRecords& records,
+                          std::span<const std::string> kinds) {
+  MotionWriter writer(group, records, kinds);
+  for (std::size_t q = 0; q < records.values.size(); ++q) {
+    if (is_followed(motion_quantities[q], records.settings))
+      writer.write(motion_quantities[q], records.values[q]);
+  }
   writer.write_layer_heights();
   writer.write_largest_steps();
 }
 
 void read_motion_records(hid_t group, MotionRecords& records) {
   for (std::size_t q = 0; q < records.values.size(); ++q) {
+    if (!is_followed(motion_quantities[q], records.settings)) continue;
     const Shape shape = shape_of_quantity(motion_quantities[q], records);
     records.values[q] = read_numbers<double>(group, motion_quantities[q].name, &shape);
   }

@@ -216,7 +216,9 @@ void PointWriter::write_motion() {
   if (!motion_) return;
   if (!exists(file_, motion_folder)) create_group(file_, motion_folder);
   create_group(file_, std::string(motion_folder) + "/" + point_name(number_));
-  write_motion_records(group_under(motion_folder), *motion_);
+  std::vector<std::string> kinds;
+  if (point_.mixture) kinds = point_.mixture->names_of_kinds();
+  write_motion_records(group_under(motion_folder), *motion_, kinds);
 }
 
 void PointWriter::write_timing() {

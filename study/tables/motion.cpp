@@ -27,8 +27,10 @@ std::vector<Table> motion_of(const ResultsFile& file, std::span<const std::uint3
   for (const std::uint32_t point : points) {
     const std::string name = point_name(point) + "/motion/";
     const auto records = file.motion(point);
+    std::vector<std::string> kinds;
+    if (const auto& mixture = file.study().points[point].mixture) kinds = mixture->names_of_kinds();
     std::vector<Table> of_point =
-        records ? motion_tables(name, *records) : std::vector{without_motion(name)};
+        records ? motion_tables(name, *records, kinds) : std::vector{without_motion(name)};
     const std::string& label = file.study().points[point].label;
     for (Table& table : of_point) {
       if (!label.empty()) table.notes.insert(table.notes.begin(), {"sweep_point", label});

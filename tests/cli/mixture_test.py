@@ -9,7 +9,8 @@ import unittest
 import h5py
 import numpy as np
 
-from support import BAD_INPUT, SOURCE, Case, changed
+from crafted_test import SEAL, sealed
+from support import BAD_INPUT, BROKEN, SOURCE, Case, changed
 
 WIDTH = 6.0
 KINDS = [{"name": "small", "count": 60}, {"name": "large", "count": 12, "diameter": 1.5},
@@ -196,6 +197,50 @@ class Mixtures(Case):
                 self.assertAlmostEqual(series["segregation"][tap, 1], (heights[2] - heights[0]) / mean, delta=1e-12)
                 x = np.floor(positions[frame] / [2, 2, 2 * 1e9]).astype(int)
                 self.assertTrue((x[:, :2] < 3).all())
+
+    def test_motion_of_kinds_is_that_of_the_kept_packings(self):
+        followed = changed(SCENE, motion={"origins": [0, 3], "lags": [3], "layers": 2})
+        self.same_digests(followed, SHORTER)
+        with h5py.File(self.folder / "one.h5") as file:
+            self.assertEqual(file["sweep/point_0000"].attrs["motion_kinds"], 3)
+            group, kind = file["motion/point_0000"], file["spheres/point_0000/kind"][()]
+            self.assertEqual(group["kind"].asstr()[()].tolist(), [kind["name"] for kind in KINDS])
+            tables = file["analysis/point_0000/motion/kinds"]
+            self.assertEqual(tables["rise"].shape, (2, 1, 3))
+            rises = np.zeros((2, 3))
+            for realization in range(3):
+                kept = file[f"particles/point_0000_realization_{realization:05}/position/value"][()]
+                for origin in range(2):
+                    moved = kept[origin + 1] - kept[origin]
+                    for k in range(3):
+                        height = moved[kind == k, 2].mean()
+                        self.assertAlmostEqual(group["kind_mean_displacement"][origin, 0, k, 2, realization],
+                                               height, delta=1e-12)
+                        self.assertAlmostEqual(group["kind_square_displacement"][origin, 0, k, 2, realization],
+                                               (moved[kind == k, 2]**2).mean(), delta=1e-12)
+                        rises[origin, k] += (height - moved[:, 2].mean()) / 3
+            np.testing.assert_allclose(tables["rise"][:, 0], rises, atol=1e-12)
+        self.jostle("report", "one.h5", "--catalogue", "figures.json")
+        figures = json.loads((self.folder / "figures.json").read_text())
+        self.assertIn("Rise of the kinds in the bed", json.dumps(figures))
+        point = json.loads(self.jostle("analyse", "one.h5", "motion", "--json").stdout)
+        self.assertIn("point_0000/motion/kinds", [table["name"] for table in point["tables"]])
+        forged = self.folder / "forged.h5"
+        forged.write_bytes((self.folder / "one.h5").read_bytes()[:-SEAL])
+        with h5py.File(forged, "r+") as file:
+            file["sweep/point_0000"].attrs.modify("motion_kinds", np.uint32(2))
+        forged.write_bytes(sealed(forged.read_bytes()))
+        refused = self.jostle("analyse", "forged.h5", "motion", expect=BROKEN)
+        self.assertIn("follows the motion of other kinds than it has", refused.stderr)
+
+    def test_motion_of_one_kind_is_not_followed_by_kind(self):
+        one = [{"name": "all", "count": 73, "diameter": {"lognormal": {"mean": 1, "deviation": 0.05}}}]
+        self.write(changed(SCENE, spheres=one, start={"pour": "steepest_descent"}, observe=["mean_height"],
+                           motion={"origins": [0], "lags": [3]}, realizations=1))
+        self.run_scene("-o", "a.h5")
+        with h5py.File(self.folder / "a.h5") as file:
+            self.assertNotIn("motion_kinds", file["sweep/point_0000"].attrs)
+            self.assertNotIn("kind", file["motion/point_0000"])
 
     def test_no_tap_makes_an_overlap(self):
         self.run_scene("-o", "a.h5")

@@ -169,15 +169,46 @@ LogEstimate four_point_susceptibility(std::span<const double> overlaps, std::uin
   return found;
 }
 
-MeanEstimate lateral_exponent(const MotionRecords& records, std::size_t origin, std::size_t lag) {
-  const auto& lags = records.settings.lags;
+std::vector<double> kind_lateral_squares(const MotionRecords& records, std::size_t origin,
+                                         std::size_t lag, std::size_t kind) {
+  const auto row = [&](std::size_t direction) {
+    return records.row("kind_square_displacement", origin, lag, n_directions * kind + direction);
+  };
+  const auto along_x = row(x), along_y = row(y);
+  return each(along_x.size(), [&](std::size_t r) { return along_x[r] + along_y[r]; });
+}
+
+std::vector<double> kind_rise(const MotionRecords& records, std::size_t origin, std::size_t lag,
+                              std::size_t kind) {
+  const auto kinds = records.row("kind_mean_displacement", origin, lag, n_directions * kind + z),
+             bed = records.row("mean_displacement", origin, lag, z);
+  return each(bed.size(), [&](std::size_t r) { return kinds[r] - bed[r]; });
+}
+
+std::vector<double> kind_vertical_squares(const MotionRecords& records, std::size_t origin,
+                                          std::size_t lag, std::size_t kind) {
+  const std::size_t place = n_directions * kind + z;
+  const auto square = records.row("kind_square_displacement", origin, lag, place),
+             mean = records.row("kind_mean_displacement", origin, lag, place),
+             bed = records.row("mean_displacement", origin, lag, z);
+  return each(bed.size(), [&](std::size_t r) {
+    const double about_bed = square[r] - (2 * mean[r] - bed[r]) * bed[r];
+    return about_bed < 0 ? 0 : about_bed;  // rounding
+  });
+}
+
+namespace {
+
+/// d ln <r^2> / d ln t of the squares of a lag, [n_realizations] of each lag.
+template <class Squares>
+MeanEstimate exponent_of(const std::vector<std::uint64_t>& lags, std::size_t lag,
+                         const Squares& squares_at) {
   const auto later = std::ranges::lower_bound(lags, 2 * lags[lag]);
   const auto earlier = std::ranges::upper_bound(lags, lags[lag] / 2);
   if (later == lags.end() || earlier == lags.begin()) return no_mean;
   const auto early = static_cast<std::size_t>(earlier - lags.begin()) - 1,
              late = static_cast<std::size_t>(later - lags.begin());
-  const Pairs squares =
-      pairs(lateral_squares(records, origin, early), lateral_squares(records, origin, late));
+  const Pairs squares = pairs(squares_at(early), squares_at(late));
   const double decades =
       std::log(static_cast<double>(lags[late]) / static_cast<double>(lags[early]));
   const double slope = std::log(sum(squares.second) / sum(squares.first)) / decades;
@@ -188,6 +219,20 @@ MeanEstimate lateral_exponent(const MotionRecords& records, std::size_t origin, 
       each(first.size(), [&](std::size_t r) { return (second[r] - first[r]) / decades; });
   return {slope, jackknife_error(left_out),
           std::max(0.0, static_cast<double>(left_out.size()) - 1)};
+}
+
+}  // namespace
+
+MeanEstimate lateral_exponent(const MotionRecords& records, std::size_t origin, std::size_t lag) {
+  return exponent_of(records.settings.lags, lag,
+                     [&](std::size_t at) { return lateral_squares(records, origin, at); });
+}
+
+MeanEstimate kind_lateral_exponent(const MotionRecords& records, std::size_t origin,
+                                   std::size_t lag, std::size_t kind) {
+  return exponent_of(records.settings.lags, lag, [&](std::size_t at) {
+    return kind_lateral_squares(records, origin, at, kind);
+  });
 }
 
 LogEstimate lateral_ratio(const MotionRecords& records, std::size_t origin, std::size_t lag) {

@@ -31,6 +31,17 @@ std::vector<double> layer_lateral_squares(const MotionRecords& records, std::siz
 std::vector<double> layer_vertical_squares(const MotionRecords& records, std::size_t origin,
                                            std::size_t lag, std::size_t layer);
 
+/// <dx^2 + dy^2> of the spheres of a kind, of each realization.
+std::vector<double> kind_lateral_squares(const MotionRecords& records, std::size_t origin,
+                                         std::size_t lag, std::size_t kind);
+/// The mean vertical displacement of a kind less that of all spheres, diameters: positive where the
+/// kind rises in the bed.
+std::vector<double> kind_rise(const MotionRecords& records, std::size_t origin, std::size_t lag,
+                              std::size_t kind);
+/// <(dz - <dz>)^2> of a kind, <dz> being the mean of all spheres: a kind may have one sphere.
+std::vector<double> kind_vertical_squares(const MotionRecords& records, std::size_t origin,
+                                          std::size_t lag, std::size_t kind);
+
 /// <r^4> / (2 <r^2>^2) - 1 of lateral displacements r in two dimensions: 0 for Gaussian ones.
 /// < > is the mean over spheres and realizations, the error a jackknife's over realizations.
 /// Rahman 1964, doi:10.1103/PhysRev.136.A405, whose form is for three dimensions.
@@ -68,6 +79,8 @@ LogEstimate four_point_susceptibility(std::span<const double> overlaps, std::uin
 /// d ln <r^2> / d ln t between the nearest lags that are at most half and at least twice this one,
 /// over the mean of realizations, with the jackknife's error over them; NaN without such lags.
 MeanEstimate lateral_exponent(const MotionRecords& records, std::size_t origin, std::size_t lag);
+MeanEstimate kind_lateral_exponent(const MotionRecords& records, std::size_t origin,
+                                   std::size_t lag, std::size_t kind);
 
 /// <r^2>(t_W, t) over that of the first waiting time at the same lag: the geometric mean over
 /// realizations of the ratio of each, with the interval by Student's t of its logarithm. None of

@@ -37,8 +37,8 @@ class MotionTable {
                    {"lag", {"lag"}, records.settings.lags, "taps", "taps after it", ""}};
   }
 
-  template <class Number>
-  void add_places(const char* name, std::vector<Number> values, const char* units,
+  template <class Value>
+  void add_places(const char* name, std::vector<Value> values, const char* units,
                   const char* long_name) {
     n_places_ = values.size();
     places_ = name;
@@ -299,11 +299,51 @@ Table layer_table(const std::string& prefix, const MotionRecords& records) {
   return table.take();
 }
 
+/// <dx^2 + dy^2> over 4 t of each realization, t being the lag.
+std::vector<double> kind_diffusivities(const MotionRecords& records, std::size_t origin,
+                                       std::size_t lag, std::size_t kind) {
+  std::vector<double> values = kind_lateral_squares(records, origin, lag, kind);
+  for (double& value : values) value /= 4 * static_cast<double>(records.settings.lags[lag]);
+  return values;
+}
+
+Table kind_table(const std::string& prefix, const MotionRecords& records,
+                 std::vector<std::string> kinds) {
+  MotionTable table(prefix + "kinds", records);
+  table.add_places("kind", std::move(kinds), "1", "kind of spheres");
+  const auto add = [&](const char* name, const char* units, const char* long_name,
+                       const auto& rows) {
+    table.add_means_of(
+        {name, units, long_name, ""},
+        [&](std::size_t o, std::size_t l, std::size_t kind) { return rows(records, o, l, kind); });
+  };
+  add("rise", "diameter",
+      "mean vertical displacement of the kind less that of all spheres: positive where the kind "
+      "rises in the bed",
+      kind_rise);
+  add("msd_lateral", "diameter^2", "mean square displacement sideways, x and y together",
+      kind_lateral_squares);
+  add("msd_z_about_bed", "diameter^2",
+      "mean square vertical displacement about the mean of all spheres", kind_vertical_squares);
+  add("lateral_diffusivity", "diameter^2/tap",
+      "msd_lateral over 4 lags: a diffusion coefficient where lateral_exponent is 1",
+      kind_diffusivities);
+  table.add_means(
+      {"lateral_exponent", "1", "d ln msd_lateral / d ln lag, over a factor of four", ""},
+      [&](std::size_t o, std::size_t l, std::size_t kind) {
+        return kind_lateral_exponent(records, o, l, kind);
+      });
+  return table.take();
+}
+
 }  // namespace
 
-std::vector<Table> motion_tables(const std::string& prefix, const MotionRecords& records) {
-  return {displacement_table(prefix, records), overlap_table(prefix, records),
-          layer_table(prefix, records)};
+std::vector<Table> motion_tables(const std::string& prefix, const MotionRecords& records,
+                                 const std::vector<std::string>& kinds) {
+  std::vector<Table> tables{displacement_table(prefix, records), overlap_table(prefix, records),
+                            layer_table(prefix, records)};
+  if (records.settings.kinds > 0) tables.push_back(kind_table(prefix, records, kinds));
+  return tables;
 }
 
 }  // namespace jostle::inline ensemble

@@ -90,6 +90,45 @@ FigurePanel by_height(const TableView& table) {
   return panel;
 }
 
+/// A curve of every kind, from the first waiting time on.
+FigurePanel by_kind(const TableView& table, const std::string& name, const std::string& title,
+                    const std::string& what, const FigureAxis& y) {
+  const std::vector<std::string> kinds = table.axis_texts("kind");
+  const std::vector<double> ages = table.axis("waiting_time"), lags = table.axis("lag");
+  const ByLag value(table, name, kinds.size()), error(table, table.half_widths(name), kinds.size());
+  FigurePanel panel{.title = title,
+                    .caption = fmt::format("{} in a lag t from tap {} on, of each kind, mean over "
+                                           "realizations; bars are 68 % intervals.",
+                                           what, ages.front()),
+                    .source = table.source(name),
+                    .x = {"lag t (taps)", AxisKind::logarithmic},
+                    .y = {y.label + unit_text(table.units(name)), y.kind}};
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    FigureSeries one{.name = kinds[kind],
+                     .colour = kind_colour(kind),
+                     .drawn = Drawn::joined_points,
+                     .symbol = kind};
+    for (std::size_t j = 0; j < lags.size(); ++j) {
+      if (std::isfinite(value(0, j, kind)))
+        one.rows.push_back({.x = lags[j], .y = value(0, j, kind), .error = error(0, j, kind)});
+    }
+    if (!one.rows.empty()) panel.series.push_back(std::move(one));
+  }
+  return panel;
+}
+
+void add_kinds(const DrawnFile& file, std::uint32_t point, const TableView& table, Figures& into) {
+  add_panel(file, point,
+            by_kind(table, "rise", "Rise of the kinds in the bed",
+                    "Mean vertical displacement less that of all spheres", {"rise"}),
+            into);
+  add_panel(
+      file, point,
+      by_kind(table, "msd_lateral", "Lateral motion of the kinds",
+              "Mean square of the lateral displacement", {"mean square", AxisKind::logarithmic}),
+      into);
+}
+
 /// At the overlap length where the susceptibility is greatest.
 FigurePanel susceptibility(const TableView& table) {
   const std::string name = "lateral_chi_4";
@@ -137,6 +176,7 @@ void add_motion(const DrawnFile& file, Figures& into) {
     }
     if (const auto table = table_of(made, point, "layers"))
       add_panel(file, point, by_height(*table), into);
+    if (const auto table = table_of(made, point, "kinds")) add_kinds(file, point, *table, into);
     if (const auto table = table_of(made, point, "overlap"))
       add_panel(file, point, susceptibility(*table), into);
   }
