@@ -6,7 +6,7 @@ import numpy as np
 
 from pictures import COLOURS, Picture, curves_of, value_of
 from reduce import REDUCED, read_table
-from special_drawings import (draw_ageing, draw_densities, draw_free_volumes, draw_increases,
+from special_drawings import (PRINTED_LABEL, draw_ageing, draw_densities, draw_free_volumes, draw_increases,
                               draw_layers, draw_map, draw_neighbours, draw_pores, draw_pours, draw_snapshots, draw_surface,
                               draw_tails, draw_void_probability)
 from scores import (COMPATIBLE, DECIDED, NOT, QUALITATIVE, REPRODUCED, SILENT, UNDERPOWERED)
@@ -71,7 +71,7 @@ def draw_curves(axes, parts):
                           markerfacecolor="white" if hollow else COLOURS[index % 8])
             lowest, index = min(lowest, x.min()), index + 1
     if picture.paper:
-        axes.plot(*zip(*picture.paper), "ko", markerfacecolor="none", label="the paper", zorder=5)
+        axes.plot(*zip(*picture.paper), "ko", markerfacecolor="none", label=PRINTED_LABEL, zorder=5)
     if "x" in picture.log:
         axes.set_xscale("symlog" if lowest <= 0 else "log", **({"linthresh": 1} if lowest <= 0 else {}))
     axes.set_yscale("log" if "y" in picture.log else "linear")
@@ -94,6 +94,7 @@ SPECIAL = {"pb5": (2, draw_ageing), "pb8": (2, draw_increases),
 
 
 def draw_figure(name, target):
+    """Draws a figure and returns whether it contains numbers that the paper prints."""
     with pyplot.rc_context(STYLE):
         panels = SPECIAL[name][0] if name in SPECIAL else len(PANELS[name])
         rows, columns = (2, 2) if panels == 4 else (1, panels)
@@ -109,7 +110,9 @@ def draw_figure(name, target):
         if surface:
             axes[-1].remove()
             draw_surface(figure.add_subplot(rows, columns + 1, columns + 1, projection="3d"))
+        printed = any(label == PRINTED_LABEL for panel in axes for label in panel.get_legend_handles_labels()[1])
         save(figure, target)
+        return printed
 
 
 def draw_strongest(target):

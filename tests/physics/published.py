@@ -73,13 +73,13 @@ FIGURES = {
                   "the spheres. With a stop that watches 0 to 15 d beds loosen; without the state right after the tap "
                   "they reach 0.583 after 250 taps."),
     "dr7": Figure("DR 7: pours against friction", ("dr-pours", "dr7-9", "dr7-columns"), f"{DR}/fig7-9", "3456", "0",
-                  "17 / 20", "0.6088 +- 0.0035 at a friction of 0.1 (its range)", POURS + " The program's middle 60 % "
+                  "20 / 20", "0.6088 +- 0.0035 at a friction of 0.1 (its range)", POURS + " The program's middle 60 % "
                   "and 0 to 15 d are denser. 0.005 is the spread of published random packings; 0.6366 is their number, "
                   "not a result of the paper."),
-    "dr8": Figure("DR 8: neighbours", ("dr-pours", "dr7-9"), f"{DR}/fig7-9", "3456", "0", "17 / 20",
+    "dr8": Figure("DR 8: neighbours", ("dr-pours", "dr7-9"), f"{DR}/fig7-9", "3456", "0", "20 / 20",
                   "mean of the normal law 7.2713 +- 0.0558", POURS + " The cut is 1.05 d, as in its fig. 3. The normal "
                   "law is fitted to the shares of each bed, as the paper does; their plain average is lower."),
-    "dr9": Figure("DR 9: free volumes", ("dr-pours",), f"{DR}/fig7-9", "3456", "0", "17 / 20",
+    "dr9": Figure("DR 9: free volumes", ("dr-pours",), f"{DR}/fig7-9", "3456", "0", "20 / 20",
                   "free volumes of the beds are alike (2 % of their mean)", POURS + " Cells of the middle of the bed. "
                   "\"Quite similar\" is read as 2 %."),
     "dr10": Figure("DR 10: Phi at Gamma = 2", ("dr10-14",), f"{DR}/fig10", "1728 (3456)", "200 (898)", "4 / 20",

@@ -10,6 +10,7 @@ from reduce import REDUCED, read_table
 
 MARKS = "osD^v<>p"
 LAYER = (2 / 3)**0.5
+PRINTED_LABEL = "the paper"
 PRINTED = ((0, 0.567), (50, 0.578), (250, 0.597))
 
 
@@ -37,7 +38,7 @@ def draw_densities(panel, points):
         values = [series("dr6-windows", point, "floor_15", tap) for tap in taps]
         panel.errorbar(taps, [v.mean() for v in values], [v.std(ddof=1) / len(v)**.5 for v in values],
                        color=COLOURS[point], label=READINGS[point], elinewidth=.6)
-    panel.plot(*zip(*PRINTED), "ko", markerfacecolor="none", label="the paper", zorder=5)
+    panel.plot(*zip(*PRINTED), "ko", markerfacecolor="none", label=PRINTED_LABEL, zorder=5)
     panel.set(xlabel="taps", ylabel="packing fraction, 0 to 15 d")
     panel.set_xscale("symlog", linthresh=1)
     panel.legend()
@@ -135,7 +136,7 @@ def draw_pours(axes):
         axes[0].errorbar(frictions, [v.mean() for v in beds], [v.std(ddof=1) for v in beds], marker=MARKS[k],
                          color=COLOURS[k], markersize=3, capsize=2, label=name)
     axes[0].errorbar([0.1], [0.6088], [0.0035], color="k", capsize=3, marker="o", markerfacecolor="none",
-                     linestyle="none", label="the paper", zorder=5)
+                     linestyle="none", label=PRINTED_LABEL, zorder=5)
     axes[0].plot([0], [0.6366], "k*", markerfacecolor="none", label="random packings", zorder=5)
     axes[0].set(xlabel="friction", ylabel="packing fraction")
     axes[0].legend()

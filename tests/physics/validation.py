@@ -66,12 +66,12 @@ def command_of(run):
     return f"./dev physics --hours 24 --only {run}" if run in PAPER_RUNS else f"./dev physics {run}"
 
 
-def page_of(name, figure, scores):
+def page_of(name, figure, scores, printed):
     own = [s for s in scores if s.claim.own]
     papers = [s for s in scores if not s.claim.own]
     parts = [f"# {figure.title}", "[All figures](../validation.md)", f"![{figure.title}]({name}.svg)",
-             wrapped(f"Black circles are the paper's printed numbers. Status: **{status_of_figure(scores)}**."
-                     if papers else "This comparison is outside the score.")]
+             wrapped("Black circles are the paper's printed numbers. " * printed +
+                     f"Status: **{status_of_figure(scores)}**." if papers else "This comparison is outside the score.")]
     if papers:
         parts += ["## The paper's statements", verdicts(papers)]
     parts += ["## Readings", wrapped(figure.silence)]
@@ -124,14 +124,14 @@ def overview_page(scores):
         known = [s for s in papers if s.status in DECIDED]
         value = key.found if len(key.found) < 40 else key.found[:36].rsplit(" ", 1)[0] + " ..."
         thumbnail = f'<img src="validation/{name}.svg" width="120" alt="{figure.title}">'
-        rows.append([f"[{figure.title}](validation/{name}.md)", thumbnail, figure.size, figure.taps,
-                     figure.realizations,
-                     f"{key.claim.text}: {value}", f"{len(known)} of {len(papers)}", f"**{status_of_figure(mine)}**"])
+        rows.append([f"[{figure.title}](validation/{name}.md)", thumbnail, f"**{status_of_figure(mine)}**",
+                     f"{len(known)} of {len(papers)}", f"{key.claim.text}: {value}", figure.size, figure.taps,
+                     figure.realizations])
     scoreboard = ", ".join(f"{found[word]} {word}" for word in STATUS)
     parts = [HEAD.strip(), wrapped(f"**{decided} of {total} statements are decided ({100 * decided / total:.0f} %)**: "
                                    f"{scoreboard}."), "![Overview of all statements](validation/overview.svg)",
-             table(["figure", "drawn", "spheres (paper)", "taps (paper)", "M here / paper", "key statement: found",
-                    "decided", "status"], rows), WORDS.strip(),
+             table(["figure", "drawn", "status", "decided", "key statement: found", "spheres (paper)", "taps (paper)",
+                    "M here / paper"], rows), WORDS.strip(),
              wrapped(f"{kept} of {tested} statements decided by a p-value remain with the false discovery rate "
                      "held at 5 % (Benjamini and Hochberg 1995); the expected share of false "
                      f"decisions is at most {100 * expected:.0f} %."),
@@ -156,8 +156,9 @@ def main(docs):
     (docs / "pictures").mkdir(exist_ok=True)
     draw_strongest(docs / "pictures" / "validation.svg")
     for name, figure in FIGURES.items():
-        draw_figure(name, folder / f"{name}.svg")
-        (folder / f"{name}.md").write_text(page_of(name, figure, [s for s in scores if s.claim.figure == name]))
+        printed = draw_figure(name, folder / f"{name}.svg")
+        mine = [s for s in scores if s.claim.figure == name]
+        (folder / f"{name}.md").write_text(page_of(name, figure, mine, printed))
     (docs / "validation.md").write_text(overview_page(scores))
 
 
