@@ -52,7 +52,28 @@ NAMES = ("about above after again along among apart around aside at away before 
          "by down each elsewhere ever everywhere from hence here how in into it many more much off of on one "
          "other others out over same some such that them then there these this those through thus to together "
          "too under up upon what whatever when where which while who whose why with within without").split()
-CPP_NAME = re.compile(rf"(?<![\w.>:#-])(?<!std::)({'|'.join(NAMES)})\b(?=\s*[;,=(){{\[:)\]])(?!\s*::)")
+NAME = rf"(?P<name>{'|'.join(NAMES)})_?\b(?!\s*::)"
+NO_TYPES = ("and|case|co_return|co_yield|delete|else|goto|if|namespace|new|not|operator|or|return|throw|typename|using|"
+            "while")
+TYPE = rf"(?!(?:{NO_TYPES})\b)[A-Za-z_][\w:]*(?:<[^;=(){{}}]*>)?"
+INITIAL = r"(?:\s*=[^=;,(){}]*(?:\([^()]*\)[^;,(){}]*)?|\[\w*\]|\{[^{};]*\}|\([^();]*\))?"
+# A declared name follows its type, another declarator of the type, or an opening bracket. Operators, commas and
+# brackets of calls precede uses.
+DECLARATIONS = [re.compile(pattern, re.M) for pattern in (
+    # int by;  Vec3& at = r;  auto of(int);  T Class::of(int);  for (const auto& in : all)
+    rf"(?:(?<![\w.:])(?!(?:{NO_TYPES})\b)[A-Za-z_][\w:]*|(?<!\s)>)(?:\[\])?[&*]*(?:\.\.\.)?\s+(?:\w+::)*"
+    rf"{NAME}(?=\s*[;,=(){{\[:])",
+    # double a = 0, by = 1;  const Vec3 &from = a, &to = b;
+    rf"^\s*(?:(?:const|static|constexpr|mutable)\s+)*{TYPE}[&*]*\s+[&*]?\w+{INITIAL}"
+    rf"(?:,\s*[&*]?\w+{INITIAL})*?,\s*[&*]?{NAME}(?=\s*[;,={{(\[])",
+    rf"^\s*(?:const\s+)?{TYPE} [&*]+{NAME}(?=\s*[;,=])",
+    # auto [a, by]  [by = a]  enum Kind { by, at }
+    rf"\bauto[&*]*\s*\[[^\]]*?\b{NAME}[^\]]*\]",
+    rf"\[(?:[^\[\]();]*,)?\s*&?{NAME}\s*=(?!=)",
+    rf"\benum\s+(?:class\s+)?\w+(?:\s*:\s*[\w:]+)?\s*\{{[^}}]*?(?:(?<=\{{)|(?<=\s)|(?<=,)){NAME}\s*(?=[,=}}])",
+)]
+# The standard library's names of checked access to an element and of the text of an exception.
+STANDARD_NAMES = {("config/json/json.hpp", "at"), ("config/json/json.cpp", "at"), ("engine/starts/starts.hpp", "what")}
 CPP_WORDS = {"this", "while"}
 FUNCTION_WORDS = re.compile(
     r"(?:Of|As|With|Without|Only|Not|No|At|By|For|From|In|On|To|Where|When|How|What|Which|Whether|That|This|"
@@ -211,6 +232,18 @@ def faults_of_text(text):
         yield "width", f"more than one sentence in a cell: {words[:60]}"
 
 
+def declared_names(code):
+    """(line, name, text of the line) of C++ declarations named by a preposition, a pronoun or an adverb."""
+    found = {}
+    for pattern in DECLARATIONS:
+        for match in pattern.finditer(code):
+            if match.group("name") not in CPP_WORDS:
+                found.setdefault(match.start("name"), match.group("name"))
+    for place, name in sorted(found.items()):
+        begin = code.rfind("\n", 0, place) + 1
+        yield code.count("\n", 0, place) + 1, name, code[begin:].split("\n", 1)[0].strip()
+
+
 def faults():
     """(rule, file, line, excerpt) of everything that a rule finds."""
     for name, path in files():
@@ -223,10 +256,9 @@ def faults():
         source = path.read_text()
         if cpp:
             texts, code = scan_cpp(source)
-            for n, line in enumerate(code.split("\n") if suffix != ".js" else [], 1):
-                for match in CPP_NAME.finditer(line):
-                    if match.group(1) not in CPP_WORDS:
-                        yield "name", name, n, line.strip()[:80]
+            for n, declared, line in declared_names(code) if suffix != ".js" else ():
+                if (name, declared) not in STANDARD_NAMES:
+                    yield "name", name, n, f"{declared}: {line[:80]}"
             texts += help_texts(name, source)
         else:
             texts = SCANNERS[suffix](source)
@@ -269,10 +301,24 @@ class Words(unittest.TestCase):
                 self.assertIn(rule, [found for found, _ in faults_of_text(Text("", 1, kind, bad))])
                 self.assertEqual(list(faults_of_text(Text("", 1, kind, good))), [])
 
+    def test_declarations_are_found_and_uses_are_not(self):
+        for code in ("int by = 1;", "const Vec3& at = r;", "std::vector<Vec3> of(int n);", "Vec3 Path::at(double s) {",
+                     "for (const auto& one : all) {", "f([](const Vec3& other) {", "double a = f(1, 2), by = 3;",
+                     "const Vec3 &r = a,\n           &by = b;", "const auto [n, by] = f();", "g([by = a.b] {",
+                     "enum class Kind { plain, other };", "Json out{{1, 2}};", "int n = 0, at = 0;", "Shape in_;",
+                     "template <class Of>\nvoid f(int n, const Of& of) {", "  std::vector<T>& into) {"):
+            with self.subTest(code=code):
+                self.assertEqual(len(list(declared_names(code))), 1)
+        for code in ("table.at(i) = 1;", "names->of(1);", "std::ios::in | std::ios::out", "return by(a);", "f(a, by);",
+                     "f({.from = 1, .to = 2});", "a = b * at(c);", "Site::other;", "if (n > at) {", "by.push_back(a);",
+                     "Box::of(extent);", "while (i < n) {", "int bypass = 1;", "x = {by, at};", "delete by;"):
+            with self.subTest(code=code):
+                self.assertEqual(list(declared_names(code)), [])
+
     def test_texts_are_found_in_each_language(self):
         texts, code = scan_cpp('int by = 1;  // of a\nf("a " "b", \'"\');  /// c\n')
         self.assertEqual([(t.kind, t.text) for t in texts], [("comment", "of a"), ("string", "a b"), ("comment", "c")])
-        self.assertEqual(CPP_NAME.search(code).group(1), "by")
+        self.assertEqual([(line, name) for line, name, _ in declared_names(code)], [(1, "by")])
         self.assertEqual([t.text for t in scan_hashes("#!/bin/sh\n# one\n# two\nx=1\n")], ["one two"])
         self.assertEqual([t.kind for t in scan_markdown("# A\n\ntext\n\n```\ncode\n```\n| a | b |\n")],
                          ["prose", "prose", "cell", "cell"])
