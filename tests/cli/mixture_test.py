@@ -242,6 +242,17 @@ class Mixtures(Case):
             self.assertNotIn("motion_kinds", file["sweep/point_0000"].attrs)
             self.assertNotIn("kind", file["motion/point_0000"])
 
+    def test_densities_matter_in_monte_carlo_only_at_a_finite_temperature(self):
+        for move, differs in ({"polar": {}}, False), ({"metropolis": {"max_step": 0.1, "beta": 20}}, True):
+            ends = []
+            for density in (0.1, 10):
+                self.write(changed(SCENE, realizations=1, relax={**move, "stop": SCENE["relax"]["stop"]},
+                                   spheres=[*KINDS[:2], {**KINDS[2], "density": density}]))
+                self.run_scene("-o", "a.h5", "--force")
+                with h5py.File(self.folder / "a.h5") as file:
+                    ends.append(file["particles/point_0000_realization_00000/position/value"][-1])
+            self.assertNotEqual(np.array_equal(*ends), differs)
+
     def test_no_tap_makes_an_overlap(self):
         self.run_scene("-o", "a.h5")
         with h5py.File(self.folder / "a.h5") as file:
