@@ -13,6 +13,9 @@ enum class Shown {
   stored,  // in the file alone
 };
 
+/// Whose bed is measured: names and units of a column depend on it.
+enum class Spheres { equal, several_sizes };
+
 /// A number that is recorded at every tap: how it is stored, and how a report shows it.
 struct Column {
   std::string name;       // also in scenes; one word of a path

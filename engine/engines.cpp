@@ -24,8 +24,8 @@ std::optional<std::string> motion_fault(const DiscreteElement& grains, const Flo
 
 }  // namespace
 
-std::vector<Column> columns(const EngineSettings& settings) {
-  return std::visit([](const auto& engine) { return columns(engine); }, settings);
+std::vector<Column> columns(const EngineSettings& settings, Spheres spheres) {
+  return std::visit([&](const auto& engine) { return columns(engine, spheres); }, settings);
 }
 
 std::optional<std::string> engine_tap_fault(const EngineSettings& settings, const Tap& tap,

@@ -17,7 +17,7 @@ namespace jostle::inline engine {
 using EngineSettings = std::variant<MonteCarlo, DiscreteElement>;
 
 /// Columns of the engine at every tap besides the observables, in order.
-std::vector<Column> columns(const EngineSettings& settings);
+std::vector<Column> columns(const EngineSettings& settings, Spheres spheres = Spheres::equal);
 
 /// Why the engine cannot make this tap; nothing if it can. Only discrete elements follow a floor
 /// that moves; a displacement both can make.

@@ -189,9 +189,6 @@ std::optional<std::string> mixture_fault(const Observable& observable,
 /// Why it cannot be measured of equal spheres; nothing if it can.
 std::optional<std::string> equal_spheres_fault(const Observable& observable);
 
-/// Whose packings are measured: a quantity is named for them.
-enum class Spheres { equal, several_sizes };
-
 /// How an observable is stored; its name is also that in scenes.
 Column label(const Observable& observable, Spheres spheres = Spheres::equal);
 

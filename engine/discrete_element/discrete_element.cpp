@@ -17,8 +17,11 @@ std::optional<std::string> engine_fault(const DiscreteElement& settings,
   return std::nullopt;
 }
 
-std::vector<Column> columns(const DiscreteElement&) {
-  const std::string energy = "m g d per sphere", source = "jostle";
+std::vector<Column> columns(const DiscreteElement&, Spheres spheres) {
+  const bool equal = spheres == Spheres::equal;
+  const std::string energy = equal ? "m g d per sphere" : "mean m g d per sphere";
+  const std::string overlap = equal ? "diameter" : "diameter of the smaller sphere",
+                    source = "jostle";
   return {
       {.name = DiscreteElement::work_column,
        .units = "s",
@@ -58,12 +61,12 @@ std::vector<Column> columns(const DiscreteElement&) {
        .source = source,
        .shown = Shown::stored},
       {.name = "greatest_overlap",
-       .units = "diameter",
+       .units = overlap,
        .long_name = "greatest overlap in the tap",
        .source = source,
        .shown = Shown::mean},
       {.name = "mean_overlap",
-       .units = "diameter",
+       .units = overlap,
        .long_name = "mean overlap of spheres that press on each other when the tap ended",
        .source = source,
        .shown = Shown::stored},

@@ -174,8 +174,9 @@ ContactTimes contact_times(const DiscreteElement& settings, const LightestMasses
 /// A floor that moves needs so many time steps in half a period, at least.
 inline constexpr double least_steps_per_half_period = 20;
 
-/// Columns of every tap, and of the start.
-std::vector<Column> columns(const DiscreteElement& settings);
+/// Columns of every tap, and of the start. For spheres of several sizes energies are in units of
+/// their mean weight times d, and overlaps are relative to the smaller sphere.
+std::vector<Column> columns(const DiscreteElement& settings, Spheres spheres = Spheres::equal);
 
 /// One realization's mechanics. A unit is one sphere moved through one time step.
 std::unique_ptr<Dynamics> make_dynamics(const DiscreteElement& settings,

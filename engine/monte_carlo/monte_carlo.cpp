@@ -9,7 +9,7 @@ const Relaxation* relaxation_of_start(const MonteCarlo& settings, const Start& s
   return std::holds_alternative<RandomSettle>(start) ? &settings.relax : nullptr;
 }
 
-std::vector<Column> columns(const MonteCarlo&) {
+std::vector<Column> columns(const MonteCarlo&, Spheres) {
   return {{.name = MonteCarlo::work_column,
            .units = "1",
            .long_name = "sweeps of the relaxation after the tap",

@@ -49,7 +49,7 @@ const Relaxation* relaxation_of_start(const MonteCarlo& settings, const Start& s
 
 /// Columns of every relaxation: sweeps, a multiple of 1 / n_spheres; acceptance, NaN
 /// without trials; capped; dropped_offsets, of a shake.
-std::vector<Column> columns(const MonteCarlo& settings);
+std::vector<Column> columns(const MonteCarlo& settings, Spheres spheres = Spheres::equal);
 
 /// One realization's mechanics. A unit is a trial; slices end at the end of a sweep.
 /// engine/monte_carlo/state.hpp has the saved state.

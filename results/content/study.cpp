@@ -49,14 +49,15 @@ StudyPoint make_point(const Plan& plan) {
                    .mixture = mixture_of(plan),
                    .taps = total_taps(plan),
                    .observables = {},
-                   .diagnostics = columns(plan.engine),
+                   .diagnostics = {},
                    .unit = unit_name(plan.engine),
                    .snapshots = plan.snapshots,
                    .motion = plan.motion,
                    .start_sum = sum_of_given(plan.start)};
+  const Spheres spheres = point.mixture ? Spheres::several_sizes : Spheres::equal;
+  point.diagnostics = columns(plan.engine, spheres);
   for (const Observable& observable : plan.observables)
-    point.observables.push_back(
-        label(observable, point.mixture ? Spheres::several_sizes : Spheres::equal));
+    point.observables.push_back(label(observable, spheres));
   return point;
 }
 
