@@ -78,7 +78,8 @@ void TrendTest::add(std::span<const double> series) {
 // For the mean slope, by the longest blocks that leave freedom enough: a slower part of the memory,
 // which the autocorrelation time does not show, is seen by no shorter ones. Block means are
 // independent but for about T / length of their variance, T the autocorrelation time, which their
-// neighbours have.
+// neighbours have. The last taps may fill no block: the variance of a slope falls as the cube of
+// the taps.
 ErrorOf TrendTest::slope_within(const AutocorrelationTime& memory) const {
   const auto n_series = static_cast<double>(n_series_);
   const double of_line = rounding * slopes_.mean() * static_cast<double>(n_);
@@ -97,7 +98,9 @@ ErrorOf TrendTest::slope_within(const AutocorrelationTime& memory) const {
     if (found.known() && dof < enough_freedom) break;
     const double shared = 1 - std::max(0.0, memory.time - 0.5) / length;
     const double variance = level.squares / dof / shared;
-    found = {std::sqrt(variance / leverage(n_blocks) / n_series) / length, dof};
+    const double in_blocks = n_blocks * length / static_cast<double>(n_);
+    found = {std::sqrt(variance * std::pow(in_blocks, 3) / leverage(n_blocks) / n_series) / length,
+             dof};
   }
   return found;
 }
