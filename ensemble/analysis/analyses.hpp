@@ -219,6 +219,10 @@ class SpectrumAnalysis {
   TrendTest trend_;
 };
 
+/// Begins the description of a quantity of a steady state that is only known to be at least its
+/// value.
+inline const std::string lower_bound = "lower bound";
+
 /// Value, deviation, autocorrelation time, each with its error; the blocking levels; trend and
 /// halves. Note "verdict" begins with "reached", "not reached" or "cannot decide", with the reason.
 Table steady_table(const AnalysedSeries& series, const SteadyState& state);

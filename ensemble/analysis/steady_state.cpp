@@ -26,11 +26,13 @@ std::string reasons_for_doubt(const SteadyState& state) {
   } else if (!(state.detectable() <= SteadyStateTest::largest_unseen)) {
     add(state.trend.power("only "));
   }
-  if (!state.autocorrelation.found() ||
-      n < SteadyStateTest::fewest_times * state.autocorrelation.time) {
-    add(finite_text("{} taps are fewer than {} autocorrelation times ({:.3g} taps{})", state.n_taps,
-                    SteadyStateTest::fewest_times, state.autocorrelation.time,
-                    state.autocorrelation.found() ? "" : " or more"));
+  if (!state.autocorrelation.found()) {
+    add(finite_text(
+        "{} taps are too few to estimate the autocorrelation time ({:.3g} taps or more)",
+        state.n_taps, state.autocorrelation.time));
+  } else if (n < SteadyStateTest::fewest_times * state.autocorrelation.time) {
+    add(finite_text("{} taps are fewer than {} autocorrelation times ({:.3g} taps)", state.n_taps,
+                    SteadyStateTest::fewest_times, state.autocorrelation.time));
   }
   if (state.realizations == 1 && !state.error.known()) {
     add("the one realization remembers for as long as the taps");

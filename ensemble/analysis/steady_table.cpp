@@ -72,12 +72,13 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
       one("value_dof", state.error.dof, "1", "degrees of freedom of value_error"),
       one("blocked_error", state.blocking.error(), series.units,
           state.blocking.plateau ? "standard error by blocking, realizations pooled"
-                                 : "lower bound of the error: blocking found no plateau",
+                                 : lower_bound + " of the error: blocking found no plateau",
           flyvbjerg_petersen),
       one("sigma", state.sigma, series.units,
-          time.found() ? "deviation of single taps about the steady value of their realization"
-                       : "lower bound of the deviation of single taps about the steady value of "
-                         "their realization: the taps are too few for their memory",
+          time.found()
+              ? "deviation of single taps about the steady value of their realization"
+              : lower_bound + " of the deviation of single taps about the steady value of their "
+                              "realization: the taps are too few for their memory",
           "Philippe & Bideau 2001, fig. 3"),
       one("sigma_error", error_or_nan(state.sigma_error), series.units, "standard error"),
       one("sigma_dof", state.sigma_error.dof, "1", "degrees of freedom of sigma_error"),
@@ -85,7 +86,7 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
           "deviation of the realizations' means, 1/(M - 1)"),
       one("autocorrelation_time", time.time, "taps",
           time.found() ? "integrated, 1/2 for independent taps"
-                       : "lower bound: too long for this number of taps",
+                       : lower_bound + ": too long for this number of taps",
           wolff),
       one("autocorrelation_time_error", time.found() ? time.error : not_a_number, "taps",
           "standard error", wolff),

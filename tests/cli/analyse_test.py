@@ -338,22 +338,31 @@ class Analysed(Case):
         asked = {"steady": [{"observable": "mean_height"}],
                  "sweep": [{"observable": "bottom_fraction", "last": 50},
                            {"observable": "mean_height", "quantity": "steady/sigma"},
+                           {"observable": "mean_height", "quantity": "inverse_log/dX"},
                            {"observable": "bottom_fraction", "quantity": "inverse_log/X_inf"}]}
         scene = changed(TAPPED, analyse=asked, streams="matched",
                         sweep={"/protocol/0/tap/dilate": [0.09, 0.01, 0.04]},
-                        fits=[{"observable": "bottom_fraction", "model": "inverse_log"}])
+                        fits=[{"observable": name, "model": "inverse_log"}
+                              for name in ("bottom_fraction", "mean_height")])
         self.write(scene)
         self.run_scene()
         with h5py.File(self.folder / "tiny.h5") as stored:
+            rise = stored["analysis/sweep/mean_height/inverse_log_dX/dX"]
+            self.assertEqual(rise.attrs["units"], "diameter")
+            self.assertIn("longer side of the 68 % interval",
+                          stored["analysis/sweep/mean_height/inverse_log_dX"].attrs["note_errors"])
             value = stored["analysis/sweep/bottom_fraction/value"]
             self.assertEqual([round(x, 12) for x in value["sqrt_epsilon"][:]], [0.1, 0.2, 0.3])
             means = [self.series("bottom_fraction", point)[-50:].mean() for point in (1, 2, 0)]
             for found, mean in zip(value["bottom_fraction"][:], means):
                 self.assertAlmostEqual(found / mean, 1, places=12)
-            sigma = stored["analysis/sweep/mean_height/steady_sigma/sigma"][:]
-            for found, point in zip(sigma, (1, 2, 0)):
-                steady = stored[f"analysis/point_{point:04}/steady/mean_height/sigma"][()]
-                self.assertEqual(found, steady)
+            # A deviation that is only known to be at least its value is no point.
+            steady = [stored[f"analysis/point_{point:04}/steady/mean_height/sigma"] for point in (1, 2, 0)]
+            measured = [sigma[()] for sigma in steady
+                        if not sigma.attrs["long_name"].startswith("lower bound")]
+            sweep = stored["analysis/sweep/mean_height/steady_sigma"]
+            self.assertEqual(list(sweep["sigma"][:]), measured)
+            self.assertEqual(sweep.attrs.get("note_left_out", "").count("lower bound"), 3 - len(measured))
             # Points whose fits do not limit the parameter on both sides are left out, and named.
             drawn = stored["analysis/sweep/bottom_fraction/inverse_log_X_inf"]
             known, unknown = {}, 0

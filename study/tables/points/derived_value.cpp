@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/numbers.hpp"
+#include "ensemble/analysis/analyses.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "results/groups/layout.hpp"
@@ -39,6 +40,12 @@ ErrorOf error_of(double error, double dof) {
 std::optional<DerivedValue> single_value(const Table& table, const std::string& name) {
   const Quantity* const found = quantity_named(table, name);
   if (!found || !found->axes.empty()) return std::nullopt;
+  if (found->long_name.starts_with(lower_bound))
+    return DerivedValue{.value = not_a_number,
+                        .error = {},
+                        .label = {name, found->units, found->long_name, found->source},
+                        .no_value = found->long_name,
+                        .error_is_no_basis = false};
   return DerivedValue{.value = number_at(found, 0),
                       .error = error_of(number_at(quantity_named(table, name + "_error"), 0),
                                         number_at(quantity_named(table, name + "_dof"), 0)),
@@ -78,14 +85,15 @@ std::optional<ParameterPoint> point_along(const Table& fit, const std::string& n
     const auto place = static_cast<std::size_t>(std::ranges::find(*names, name) - names->begin());
     if (place == names->size()) return std::nullopt;
     const std::string found = text_at(quantity_named(fit, prefix + "identifiability"), place);
+    const std::string units = text_at(quantity_named(fit, prefix + "units"), place);
     if (found == name_of(Identifiability::identified) || found == name_of(Identifiability::wide))
       return ParameterPoint{number_at(quantity_named(fit, prefix + "value"), place),
-                            error_of_interval(fit, place, prefix), ""};
+                            error_of_interval(fit, place, prefix), "", units};
     return ParameterPoint{not_a_number,
                           {},
-                          found.empty()
-                              ? "fitted by an earlier version: fit it again"
-                              : text_at(quantity_named(fit, prefix + "statement"), place)};
+                          found.empty() ? "fitted by an earlier version: fit it again"
+                                        : text_at(quantity_named(fit, prefix + "statement"), place),
+                          units};
   }
   return std::nullopt;
 }
@@ -102,7 +110,7 @@ std::optional<DerivedValue> parameter(const Table& table, const std::string& nam
   if (!point) return std::nullopt;
   return DerivedValue{.value = point->value,
                       .error = point->error,
-                      .label = {name, "1", "parameter of a fit", ""},
+                      .label = {name, point->units, parameter_of_a_fit, ""},
                       .no_value = point->no_value,
                       .error_is_no_basis = point->no_value.empty() && !point->error.known()};
 }

@@ -23,11 +23,14 @@ struct ParameterPoint {
   double value;          // NaN without one
   ErrorOf error;         // Student's t makes the longer side of its 68 % interval of it
   std::string no_value;  // why there is none
+  std::string units;     // in units X of the observable and t of taps: "X/t"
 };
 
 /// A value where the 95 % interval is closed; what has no limit on one side is no point of a curve.
 /// None of a table that has no such parameter.
 std::optional<ParameterPoint> parameter_point(const Table& fit, const std::string& name);
+
+inline const std::string parameter_of_a_fit = "parameter of a fit";  // its label's long name
 
 struct DerivedValue {
   double value;  // NaN without one

@@ -138,10 +138,23 @@ void set_values(std::span<Member> members, const std::string& observable,
   }
 }
 
+/// Units of a parameter of a fit, "X/t" in the table, for an observable with these units.
+std::string parameter_units(const std::string& units, const std::string& observable) {
+  const bool has_units = observable != "1";
+  if (units == "X") return observable;
+  if (units == "t") return "taps";
+  if (units == "1/t") return "1/taps";
+  if (units == "X/t") return observable + "/taps";
+  if (units == "X t") return has_units ? observable + " taps" : "taps";
+  return units;
+}
+
 void set(Member& member, DerivedValue&& derived) {
+  const std::string observable = member.label.units;
   member.y = derived.value;
   member.y_error = derived.error;
   member.label = std::move(derived.label);
+  member.label.units = parameter_units(member.label.units, observable);
   member.no_value = std::move(derived.no_value);
   member.error_is_no_basis = derived.error_is_no_basis;
   member.taps = std::move(derived.taps);
@@ -240,11 +253,14 @@ void add_notes(std::span<const Member> members, Table& table) {
   }
   if (!taps.empty()) table.notes.emplace_back("taps", joined(taps, ", "));
   if (!left_out.empty()) table.notes.emplace_back("left_out", left_out);
-  if (std::ranges::any_of(members, &Member::error_is_no_basis)) {
-    table.notes.emplace_back("errors",
-                             "those of fits to three realizations or fewer are not taken: too many "
-                             "such fits set no limit, and the others scatter less than all would");
-  }
+  std::string errors;
+  if (members.front().label.long_name == parameter_of_a_fit)
+    errors = "the error of a parameter is the longer side of the 68 % interval of its fit";
+  if (std::ranges::any_of(members, &Member::error_is_no_basis))
+    errors +=
+        "; errors of fits to three realizations or fewer are not used: too many such fits set no "
+        "limit, and the others scatter less than all would";
+  if (!errors.empty()) table.notes.emplace_back("errors", errors);
 }
 
 Table curve_table(std::string name, std::span<const Member> members,
@@ -268,8 +284,10 @@ Table curve_table(std::string name, std::span<const Member> members,
       means ? SweepCurve(x, realizations, streams_of(members)) : SweepCurve(x, y, y_error);
   std::optional<std::size_t> point;
   if (reference) point = point_at(curve, *reference, members.front().swept.name);
-  Table table =
-      sweep_table(std::move(name), members.front().swept, members.front().label, curve, point);
+  const auto valued =
+      std::ranges::find_if(members, [](const Member& member) { return member.no_value.empty(); });
+  const Member& first = valued == members.end() ? members.front() : *valued;
+  Table table = sweep_table(std::move(name), first.swept, first.label, curve, point);
   add_notes(members, table);
   add_steadiness(members, table);
   return table;

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "ensemble/analysis/analyses.hpp"
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "study/tables/fits.hpp"
@@ -77,7 +78,41 @@ void check(std::size_t realizations, double slope, int sweeps) {
   CHECK(covered >= 0.95 * made - margin(0.95));
 }
 
+/// The steady state of three first-order autoregressive series, as a file keeps it.
+MadeTables steady_state_of(double memory, std::size_t taps) {
+  SteadyStateTest test;
+  Noise noise(7);
+  for (int r = 0; r < 3; ++r) {
+    std::vector<double> series = {noise()};
+    while (series.size() < taps) series.push_back(memory * series.back() + noise());
+    test.add(series);
+  }
+  AnalysedSeries last;
+  last.observable = "z";
+  last.units = "1";
+  last.last_tap = taps - 1;
+  Table table = steady_table(last, test.result());
+  table.name = "point_0000/" + table.name;
+  return {.fits = {}, .analyses = {table}};
+}
+
 }  // namespace
+
+TEST_CASE("A lower bound of a steady state's quantity is no point of a curve") {
+  const MadeTables too_short = steady_state_of(0.95, 60), enough = steady_state_of(0, 400);
+  for (const std::string name : {"steady/sigma", "steady/autocorrelation_time"}) {
+    CAPTURE(name);
+    const DerivedValue bound = derived_value(too_short, 0, "z", name);
+    CHECK(std::isnan(bound.value));
+    CHECK_FALSE(bound.error.known());
+    CHECK(bound.no_value.starts_with("lower bound"));
+    const DerivedValue measured = derived_value(enough, 0, "z", name);
+    CHECK(measured.value == Approx(name == "steady/sigma" ? 1 : 0.5).epsilon(0.3));
+    CHECK(measured.error.known());
+    CHECK(measured.no_value.empty());
+  }
+  CHECK(derived_value(too_short, 0, "z", "steady/value").no_value.empty());
+}
 
 TEST_CASE(
     "Lines through a fit's parameter hold the truth, and are called bent, at their stated rate",
