@@ -34,14 +34,17 @@ Contacts contacts_within(const MeasuredPacking& in, const NeighbourTable& near, 
   const Backbone every = backbone(in.packing, near, tolerance, 0);
   const Backbone held = backbone(in.packing, near, tolerance, least);
   double spheres = 0, all = 0, rattlers = 0, contacts = 0;
+  bool has_backbone = false;
   for (std::size_t i = 0; i < near.size(); ++i) {
+    has_backbone = has_backbone || !held.rattler[i];
     if (!in.in_region(i)) continue;
     spheres += 1;
     all += every.contacts[i];
     rattlers += held.rattler[i] ? 1 : 0;
     contacts += held.contacts[i];
   }
-  return {all / spheres, rattlers / spheres, contacts / (spheres - rattlers)};
+  return {all / spheres, has_backbone ? rattlers / spheres : not_a_number,
+          contacts / (spheres - rattlers)};
 }
 
 /// Gaps between the region's spheres and their neighbours, in sums of radii. Each counts as if
@@ -150,11 +153,6 @@ std::string tolerance_note(double tolerance, const char* unit) {
          "backbone_contacts, and at each gap neither in rattlers_of_gap nor in backbone_z_of_gap";
 }
 
-/// Returns the fraction of rattlers; NaN where all spheres are, in a packing without a backbone.
-double rattlers_of_backbone(const Contacts& found) {
-  return found.rattlers < 1 ? found.rattlers : not_a_number;
-}
-
 }  // namespace
 
 Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
@@ -168,7 +166,7 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
   for (const double gap : grid) {
     const Contacts found = contacts_within(in, near, gap, least);
     all.push_back(found.all);
-    rattlers.push_back(rattlers_of_backbone(found));
+    rattlers.push_back(found.rattlers);
     without.push_back(found.without_rattlers);
     exponents.push_back(gap > 0 && gap < 0.7 * settings.window.high
                             ? gaps.exponent(gap, settings.window.high)
@@ -210,7 +208,7 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
        .values = {found.all},
        .long_name = "mean number of contacts within the tolerance"},
       {.name = "rattlers",
-       .values = {rattlers_of_backbone(found)},
+       .values = {found.rattlers},
        .long_name = "fraction of rattlers, removed one after another, of packings with a backbone",
        .source = donev,
        .with_packings = true},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ensemble/analysis/analyses.hpp"
 #include "study/drawing/drawn/value_text.hpp"
 #include "study/drawing/figures/drawn_file.hpp"
 #include "study/drawing/page/page_json.hpp"
@@ -154,7 +155,9 @@ std::string title_of(const DrawnFile& file, const TableView& table) {
 std::string value_cell(const TableView& table, const std::string& quantity, std::size_t i,
                        UnitPlace unit) {
   const double value = table.value(quantity, i);
-  const std::string text = typeset_with_error(value, table.half_width(quantity, i));
+  const bool is_bound = std::isfinite(value) && table.long_name(quantity).starts_with(lower_bound);
+  const std::string text = is_bound ? "≥ " + typeset_number(value, 3)
+                                    : typeset_with_error(value, table.half_width(quantity, i));
   const bool bare = unit == UnitPlace::head || !std::isfinite(value);
   return bare ? text : with_unit(text, table.units(quantity));
 }

@@ -97,7 +97,7 @@ std::string title_of(const DrawnFile& file, const TableView& table);
 
 /// Where a unit is printed: with each number, or at the head of its column.
 enum class UnitPlace { cell, head };
-/// value(error) of a quantity, with its unit; its error is NAME_error.
+/// value(error) of a quantity, with its unit; its error is NAME_error. "≥ value" of a lower bound.
 std::string value_cell(const TableView& table, const std::string& quantity, std::size_t i = 0,
                        UnitPlace unit = UnitPlace::cell);
 std::string number_cell(const TableView& table, const std::string& quantity, std::size_t i = 0,
