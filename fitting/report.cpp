@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iomanip>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "fitting/value_text.hpp"
@@ -74,6 +75,27 @@ std::string parameter_table(const std::vector<Estimate>& estimates) {
         {e.parameter.name, estimate_text(e), interval_text(e, 1), verdict_text(e.identifiability)});
   }
   return table(rows);
+}
+
+// "  units: X_inf, dX in d; tau in taps": of parameters that are no plain numbers, in the order of
+// the tables. Empty if all are plain numbers.
+std::string listed_units(const Fit& fit, const CurveUnits& units) {
+  std::vector<std::pair<std::string, std::string>> groups;  // unit, names
+  std::set<std::string> known;
+  for (const ParameterTable& one : parameter_tables(fit)) {
+    for (const Estimate& e : one.estimates) {
+      const std::string unit = unit_text(e.parameter.unit, units);
+      if (unit == "1" || !known.insert(e.parameter.name).second) continue;
+      auto group = std::ranges::find(groups, unit, &std::pair<std::string, std::string>::first);
+      if (group == groups.end()) group = groups.insert(groups.end(), {unit, ""});
+      group->second += (group->second.empty() ? "" : ", ") + e.parameter.name;
+    }
+  }
+  std::string text;
+  for (const auto& [unit, names] : groups) {
+    text += (text.empty() ? "  units: " : "; ") + names + " in " + unit;
+  }
+  return text.empty() ? "" : text + '\n';
 }
 
 std::string more_of_the_parameters(const Fit& fit) {
@@ -231,7 +253,27 @@ std::vector<ParameterTable> parameter_tables(const Fit& fit) {
   return tables;
 }
 
-std::string describe(const Fit& fit, ReportDetail detail) {
+std::string unit_text(ParameterUnit unit, const CurveUnits& units) {
+  const std::string x = units.x.empty() ? "[X]" : units.x;
+  const std::string t = units.t.empty() ? "[t]" : units.t;
+  switch (unit) {
+    case ParameterUnit::none:
+      return "1";
+    case ParameterUnit::value:
+      return x;
+    case ParameterUnit::time:
+      return t;
+    case ParameterUnit::value_per_time:
+      return x + "/" + t;
+    case ParameterUnit::value_time:
+      return x == "1" ? t : x + " " + t;
+    case ParameterUnit::per_time:
+      return "1/" + t;
+  }
+  return "";
+}
+
+std::string describe(const Fit& fit, ReportDetail detail, const CurveUnits& units) {
   std::ostringstream text;
   text << fit.model << ": " << (fit.logarithmic ? "ln X = ln of " : "X = ") << fit.formula;
   if (!fit.source.empty()) text << "  [" << fit.source << "]";
@@ -240,7 +282,7 @@ std::string describe(const Fit& fit, ReportDetail detail) {
     if (!one.heading.empty()) text << "  " << one.heading << ":\n";
     text << parameter_table(one.estimates);
   }
-  text << "  " << basis_of_errors(fit) << "; reduced "
+  text << listed_units(fit, units) << "  " << basis_of_errors(fit) << "; reduced "
        << (fit.sigma_given ? "chi2 " : "residual sum ") << number(fit.reduced_chi2, 3) << ", R2 "
        << number(fit.r2, 4) << '\n';
   if (detail == ReportDetail::full) text << more_of_the_parameters(fit) << statistics(fit);

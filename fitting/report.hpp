@@ -13,6 +13,14 @@ enum class ReportDetail {
   full    // 68 % intervals, linear errors, what parameters mean and the statistics of the fit too
 };
 
+/// Units of a curve, as they are printed; empty where they are not known.
+struct CurveUnits {
+  std::string x, t;  // "d", "taps"; "1" is a number without a unit
+};
+
+/// "d", "taps", "1/taps", "1": the unit of a parameter. Units that are not known are "[X]", "[t]".
+std::string unit_text(ParameterUnit unit, const CurveUnits& units);
+
 /// A table of parameters in a report of a fit.
 struct ParameterTable {
   std::string heading;  // empty for the law that was asked for, where it is the first
@@ -33,11 +41,12 @@ std::string difference_text(const HeldOutLaw& law);
 /// The interval of level 0 (68 %) or 1 (95 %): "0.571 to 0.576", "> 0.571", "no limit".
 std::string interval_text(const Estimate& estimate, std::size_t level);
 
-/// A fit for people: the law, a table of parameters, what errors and intervals rest on, and
-/// remarks. Several lines, each ended by a newline; tables are at most 80 wide, sentences are not
-/// folded. A value is printed with its error (value_with_error): half of the 68 % interval, which
-/// holds the value; "-" where that interval is open.
-std::string describe(const Fit& fit, ReportDetail detail = ReportDetail::brief);
+/// A fit for people: the law, a table of parameters and their units, what errors and intervals rest
+/// on, and remarks. Several lines, each ended by a newline; tables are at most 80 wide, sentences
+/// are not folded. A value is printed with its error (value_with_error): half of the 68 % interval,
+/// which holds the value; "-" where that interval is open.
+std::string describe(const Fit& fit, ReportDetail detail = ReportDetail::brief,
+                     const CurveUnits& units = {});
 
 /// Fits of one curve by several models: reduced chi2 (chi2/dof) and how they predict realizations
 /// that were held out.

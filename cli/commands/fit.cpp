@@ -170,9 +170,7 @@ void refuse_options_of_results(const FitArguments& arguments) {
     throw BadInput("--gaps applies only to columns of realizations: add --realizations");
   }
   if (arguments.independent && arguments.realizations) {
-    throw BadInput(
-        "--independent applies only to a single curve; with --realizations errors come from their "
-        "scatter");
+    throw BadInput("--independent applies only to a single curve: omit it with --realizations");
   }
 }
 
@@ -188,6 +186,7 @@ FitSource measured_source(const FitArguments& arguments) {
   FitSource source;
   source.curve = std::move(measured.curve);
   source.notes = std::move(measured.notes);
+  source.units = measured.units;
   source.title = arguments.input;
   if (arguments.realizations) {
     source.title += fmt::format(", {} realizations", source.curve.n_realizations);

@@ -190,7 +190,7 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   std::vector<std::string> tables = file.table_names();
   if (settings.shard.count == 1) {
     TablesDisplay display(arguments.quiet ? Quiet::yes : Quiet::no, arguments.layout,
-                          arguments.verbose ? FitDetail::full : FitDetail::summary);
+                          arguments.verbose ? TableDetail::full : TableDetail::summary);
     const auto stored = store_scene_tables(file, settings.threads, display, settings.patience);
     display.print_summary();
     tables.insert(tables.end(), stored.begin(), stored.end());
@@ -272,7 +272,8 @@ void add_options(Command& command, RunArguments& arguments) {
   add_wait(command, arguments.patience);
   add_wide(command, arguments.layout);
   command.add_flag("--verbose", arguments.verbose,
-                   "Full reports of the scene's fits (default: one summary table)");
+                   "Full reports of the fits, analyses and structure of the scene (default: their "
+                   "results)");
   command.add_flag("--quiet", arguments.quiet, "Print errors only").environment("JOSTLE_QUIET");
   command.add_flag("--no-progress", arguments.no_progress, "Print no progress")
       .environment("JOSTLE_NO_PROGRESS");

@@ -44,8 +44,8 @@ std::string one_line(const std::string& text, const char* what) {
   const std::string shown = printable_name(text);
   if (shown != text)
     throw BadInput(
-        fmt::format("{} \"{}\" has a character that no line of a script can hold or "
-                    "show: take another name",
+        fmt::format("{} \"{}\" has a character that a line of a script cannot contain or "
+                    "show: choose another name",
                     what, shown));
   return text;
 }
@@ -109,8 +109,8 @@ std::string layout_hint(const SceneCost& cost, const JobRequest& request, const 
   if (!better) return "";
   const JobPlan other = plan_jobs(cost, *better);
   return finite_text(
-      "CPUs have nothing to do for {:.0f} % of the time that is reserved. --cpus {} --jobs {} "
-      "reserve them with efficiency {:.0f} %, and the longest task needs {}",
+      "CPUs have nothing to do for {:.0f} % of the reserved time. With --cpus {} --jobs {} the "
+      "efficiency is {:.0f} %, and the longest task needs {}",
       100 * (1 - plan.efficiency), better->cpus, better->shards, 100 * other.efficiency,
       format_duration(other.longest_task));
 }
@@ -125,14 +125,14 @@ std::vector<std::string> warnings_of(const JobPlan& plan, const SlurmArguments& 
                     100 * pilot.scatter()));
   }
   if (plan.starts > 1) {
-    warnings.push_back(
-        fmt::format("the longest task needs {}: the script puts itself back into the queue. More "
-                    "--jobs or --hours make it fewer",
-                    counted(plan.starts, "submission")));
+    warnings.push_back(fmt::format(
+        "the longest task needs {}: the script requeues itself. Increase --jobs or --hours "
+        "for fewer submissions",
+        counted(plan.starts, "submission")));
   }
   if (plan.most_realizations < arguments.cpus) {
     warnings.push_back(fmt::format(
-        "a job has at most {}, a CPU each: {} of its {} CPUs have nothing to do. Take --cpus {}, "
+        "a job has at most {}, one CPU each: {} of its {} CPUs have nothing to do. Use --cpus {}, "
         "or fewer --jobs",
         counted(plan.most_realizations, "realization"), arguments.cpus - plan.most_realizations,
         arguments.cpus, plan.most_realizations));
@@ -141,8 +141,8 @@ std::vector<std::string> warnings_of(const JobPlan& plan, const SlurmArguments& 
   constexpr std::uint64_t large = 1 << 30;
   if (cost.bytes_on_disk > large && plan.shards % points != 0 && points % plan.shards != 0) {
     warnings.push_back(fmt::format(
-        "every shard holds some realizations of all {} sweep points, which makes files and merges "
-        "larger: a multiple or a divisor of {} as --jobs gives it whole points",
+        "every shard has some realizations of all {} sweep points, which makes files and merges "
+        "larger. Use a multiple or a divisor of {} as --jobs, so that shards have whole points",
         points, points));
   }
   return warnings;

@@ -38,7 +38,7 @@ std::string next_text(const ShardsStatus& study, const StatusArguments& argument
     return fmt::format("next:\n  {}\n", shell_words(words));
   }
   if (redo.empty()) return "";
-  text = "to redo what is neither done nor running, and nothing else:\n";
+  text = "to run the stopped, dead and missing shards again:\n";
   for (std::size_t i = 0; i < std::min(redo.size(), most_commands); ++i)
     text += fmt::format("  {}\n", redo[i]);
   if (redo.size() > most_commands)

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* what_to_install =
     "On Debian or Ubuntu: sudo apt-get install python3-matplotlib python3-h5py python3-numpy. The "
-    "data, the scripts and the JSON of the figures are written.";
+    "data, the scripts and the JSON of --figures are written in any case.";
 
 /// Empty where there is no such file.
 std::string read_file(const fs::path& path) {

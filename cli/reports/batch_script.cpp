@@ -14,7 +14,7 @@
 namespace jostle::inline cli {
 namespace {
 
-/// More of them mean that a run does not get on.
+/// Restarts after which the script no longer requeues itself, so that a run without progress ends.
 std::uint64_t most_restarts(const JobPlan& plan) {
   constexpr std::uint64_t at_least = 10, of_the_estimate = 3;
   return std::max(at_least, of_the_estimate * plan.starts);
@@ -38,9 +38,9 @@ std::string header(const BatchScript& script, const JobPlan& plan) {
       "# {}. Made by\n"
       "#   {}\n"
       "# {}\n"
-      "# Submit with sbatch: options of its command line (-p, -A, --array, ...) win over those "
+      "# Submit with sbatch. Options of its command line (-p, -A, --array, ...) override those "
       "here.\n"
-      "# This file may be submitted any number of times: what is done is not done again.\n",
+      "# Submit this file any number of times: finished work is not repeated.\n",
       script.name, printable_name(script.made_by), printable_name(script.estimate));
   for (const auto& [option, value] : options)
     text += fmt::format("#SBATCH --{}={}\n", option, shell_words({value}));
@@ -52,11 +52,11 @@ std::string header(const BatchScript& script, const JobPlan& plan) {
 constexpr const char* body = R"BASH(
 # Where another user's link leads, that user chooses.
 if [ -L "$results" ] && [ "$(stat -c %u -- "$results")" != "$EUID" ]; then
-  printf '%s is a link of another user, and not followed: name the folder itself\n' "$results"
+  printf '%s is a link of another user and is not followed: name the folder itself\n' "$results"
   exit 4
 fi
 mkdir -p -- "$results" || exit 4
-# jostle status reads it there.
+# jostle status reads the copy.
 cp --remove-destination -- "$0" "$results/.job.$SLURM_JOB_ID" &&
   mv -fT -- "$results/.job.$SLURM_JOB_ID" "$results/job.sbatch"
 
@@ -72,7 +72,7 @@ for ((shard = (SLURM_ARRAY_TASK_ID - 1) * a_task + 1, last = shard + a_task - 1;
       shard <= last && shard <= shards; ++shard)); do
   if [ -n "$stopped" ]; then left=yes; break; fi
   if [ -L "$results/$shard.log" ]; then
-    log_line "$results/$shard.log is a link, and no log is written through one: remove it"
+    log_line "$results/$shard.log is a link, and logs are not written through links: remove it"
     worst=4
     continue
   fi
@@ -92,13 +92,13 @@ done
 [ -n "$left" ] || exit $worst
 trap '' USR1 TERM
 if [ -z "$out_of_time" ]; then
-  log_line "stopped before its time limit: not put back into the queue"
+  log_line "stopped before its time limit: not requeued"
 elif [ "${SLURM_RESTART_COUNT:-0}" -ge "$most_restarts" ]; then
-  log_line "out of time after $most_restarts restarts: not put back into the queue again"
+  log_line "out of time after $most_restarts restarts: not requeued again"
 elif scontrol requeue "$job"; then
-  log_line "out of time, and back in the queue"
+  log_line "out of time, requeued"
 else
-  log_line "out of time, and cannot go back into the queue: submit it again"
+  log_line "out of time, and requeueing failed: submit it again"
 fi
 exit 75
 )BASH";

@@ -17,10 +17,8 @@ namespace {
 
 constexpr const char* verdict_legend =
     "\na(b): b, in the last digits of a, is half the 68 % interval; a(+b/-c): its two sides; -: "
-    "that "
-    "interval is open; not identifiable: the data set no limit. docs/reference/laws.md describes "
-    "the "
-    "rest.\n";
+    "that interval is open; not identifiable: the data set no limit. docs/reference/laws.md "
+    "describes all terms.\n";
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json();
@@ -72,12 +70,12 @@ Json parameters_json(const Fit& fit, const std::optional<ResampledErrors>& resam
 }
 
 /// The report of the fit with the resampled errors under it, or the refusal.
-std::string fit_text(const FitOutcome& outcome, ReportDetail detail) {
+std::string fit_text(const FitOutcome& outcome, ReportDetail detail, const CurveUnits& units) {
   if (const auto* refusal = std::get_if<Refusal>(&outcome.result)) {
     return fmt::format("{}: no fit: {}\n", outcome.model, refusal->message);
   }
   const Fit& fit = std::get<Fit>(outcome.result);
-  std::string text = describe(fit, detail);
+  std::string text = describe(fit, detail, units);
   if (!outcome.resampled) return text;
   const ResampledErrors& resampled = *outcome.resampled;
   text +=
@@ -209,7 +207,7 @@ std::string fits_text(const FittedCurve& fitted, const Layout& layout) {
       layout.columns == Columns::all ? ReportDetail::full : ReportDetail::brief;
   for (const FitOutcome& outcome : fitted.outcomes) {
     text += '\n';
-    text += fit_text(outcome, detail);
+    text += fit_text(outcome, detail, fitted.source.units);
   }
   if (fits.size() > 1) text.append("\n").append(compare(fits, fitted.comparison));
   if (!fits.empty()) text += verdict_legend;
@@ -250,31 +248,38 @@ std::vector<FitSummary> summary_of(const FittedCurve& fitted) {
 
 std::string summary_text(const std::vector<FitSummary>& rows, const Layout& layout) {
   if (rows.empty()) return "";
-  const std::string& observable = rows.front().observable;
-  const bool is_shared = std::ranges::all_of(
-      rows, [&](const FitSummary& row) { return row.observable == observable; });
   const bool is_compared =
       std::ranges::any_of(rows, [](const FitSummary& row) { return row.difference != "-"; });
-  std::vector<std::string> head{"curve", "law", "verdict", "asymptote"};
-  if (is_compared) head.insert(head.begin() + 3, "difference");
-  TextTable table(head, 2);
-  for (const FitSummary& row : rows) {
-    const bool has_point = !row.point.empty();
-    const std::string curve = is_shared && has_point ? row.point
-                              : has_point            ? row.observable + ", " + row.point
-                                                     : row.observable;
-    std::vector<std::string> cells{curve, row.law, row.verdict, row.asymptote};
-    if (is_compared) cells.insert(cells.begin() + 3, row.difference);
-    table.add(std::move(cells));
+  const bool has_points =
+      std::ranges::any_of(rows, [](const FitSummary& row) { return !row.point.empty(); });
+  const auto cells_of = [&](const FitSummary& row) {
+    std::vector<std::string> cells{row.law, row.verdict};
+    if (has_points) cells.insert(cells.begin(), row.point);
+    if (is_compared) cells.push_back(row.difference);
+    cells.push_back(row.asymptote);
+    return cells;
+  };
+  std::string text;
+  std::vector<std::string> printed;
+  for (const FitSummary& first : rows) {
+    const std::string& observable = first.observable;
+    if (std::ranges::find(printed, observable) != printed.end()) continue;
+    TextTable table(
+        cells_of({observable, "sweep point", "law", "verdict", "difference", "asymptote"}),
+        has_points ? 2 : 1);
+    for (const FitSummary& row : rows) {
+      if (row.observable == observable) table.add(cells_of(row));
+    }
+    text += fmt::format("{}fits of {}\n{}", printed.empty() ? "" : "\n", observable,
+                        table.text(layout.table_width()));
+    printed.push_back(observable);
   }
-  return (is_shared ? fmt::format("fits of {}\n", observable) : "") +
-         table.text(layout.table_width()) +
-         wrapped(
-             fmt::format(
-                 "a(b): b, in the last digits of a, is half the 68 % interval.{} --verbose "
-                 "prints every fit.\n",
-                 is_compared ? " difference: of the held-out errors, from the leading law." : ""),
-             layout.width);
+  return text + wrapped(fmt::format("a(b): b, in the last digits of a, is half the 68 % "
+                                    "interval.{} --verbose prints every fit.\n",
+                                    is_compared ? " difference: of the held-out errors, from the "
+                                                  "leading law."
+                                                : ""),
+                        layout.width);
 }
 
 std::string memory_hint(const FittedCurve& fitted) {

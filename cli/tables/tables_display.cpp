@@ -11,16 +11,21 @@ namespace jostle::inline cli {
 
 void TablesDisplay::fitted(const FittedCurve& curve) {
   if (quiet_ == Quiet::yes) return;
-  if (detail_ == FitDetail::full) return print_report("\n" + fits_text(curve, layout_));
-  for (FitSummary& row : summary_of(curve)) summary_.push_back(std::move(row));
-}
-
-void TablesDisplay::print_summary() const {
-  if (!summary_.empty()) print_report("\n" + summary_text(summary_, layout_));
+  if (detail_ == TableDetail::full) return print_report("\n" + fits_text(curve, layout_));
+  for (FitSummary& row : summary_of(curve)) fits_.push_back(std::move(row));
 }
 
 void TablesDisplay::analysed(const Table& table) {
-  if (quiet_ == Quiet::no) print_report("\n" + table_text(table, layout_));
+  if (quiet_ == Quiet::yes) return;
+  if (detail_ == TableDetail::full) return print_report("\n" + table_text(table, layout_));
+  results_.add(table);
+}
+
+void TablesDisplay::print_summary() const {
+  if (!fits_.empty()) print_report("\n" + summary_text(fits_, layout_));
+  if (const std::string text = results_.text(layout_.width); !text.empty()) {
+    print_report("\n" + text);
+  }
 }
 
 void TablesDisplay::without_structure(const std::string& reason) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "cli/reports/fit_output.hpp"
+#include "cli/reports/scene_summary.hpp"
 #include "cli/tables/layout.hpp"
 #include "study/running/scene_tables.hpp"
 
@@ -10,14 +11,14 @@ namespace jostle::inline cli {
 
 enum class Quiet { no, yes };
 
-/// How much of each fit is printed.
-enum class FitDetail { summary, full };
+/// How much of each fit, analysis and part of structure is printed.
+enum class TableDetail { summary, full };
 
-/// Prints the tables that a scene requests: analyses at once, fits as one summary table by
-/// print_summary(), or each at once in full. If quiet, prints only failures, on stderr.
+/// Prints the tables that a scene requests: their results by print_summary(), or each table at once
+/// in full. If quiet, prints only failures, on stderr.
 class TablesDisplay : public TablesObserver {
  public:
-  TablesDisplay(Quiet quiet, const Layout& layout, FitDetail detail = FitDetail::summary)
+  TablesDisplay(Quiet quiet, const Layout& layout, TableDetail detail = TableDetail::summary)
       : quiet_(quiet), layout_(layout), detail_(detail) {}
   void fitted(const FittedCurve& curve) override;
   void analysed(const Table& table) override;
@@ -27,8 +28,9 @@ class TablesDisplay : public TablesObserver {
  private:
   Quiet quiet_;
   Layout layout_;
-  FitDetail detail_;
-  std::vector<FitSummary> summary_;
+  TableDetail detail_;
+  SceneSummary results_;
+  std::vector<FitSummary> fits_;
 };
 
 }  // namespace jostle::inline cli

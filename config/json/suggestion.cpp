@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
 
 namespace jostle::inline config {
 
@@ -50,7 +49,8 @@ namespace {
 
 constexpr std::string_view strength_hint =
     " The strength of a Monte Carlo tap is \"dilate\" (eps: heights are multiplied by 1 + eps) or "
-    "\"lift\", not an acceleration. Roughly, eps = Gamma^2 g / (2 (2 pi f)^2 h) for a bed of "
+    "\"lift\" (gamma: heights rise by gamma), not an acceleration. Roughly, eps = Gamma^2 g / (2 "
+    "(2 pi f)^2 h) for a bed of "
     "height h "
     "(Philippe & Bideau 2001, eq. 2): 1.7e-4 Gamma^2 in the tube of Knight et al. (30 Hz, 0.8 m). "
     "Discrete elements have the \"acceleration\" Gamma of \"half_sine\" and \"vibration\".";
@@ -58,33 +58,109 @@ constexpr std::string_view sizes_hint =
     " Sizes belong to the kinds of a mixture: \"spheres\": [{\"name\": \"a\", \"count\": 100, "
     "\"diameter\": 1.2}, ...].";
 constexpr std::string_view friction_hint =
-    " Contact laws belong to \"engine\": {\"discrete_element\": ...}; Monte Carlo has none.";
+    " Contact laws belong to discrete elements: \"engine\": {\"discrete_element\": {\"contact\": "
+    "{\"walton_braun\": {\"friction\": 0.1, \"restitution\": 0.9}}}}. Monte Carlo has none.";
+constexpr std::string_view number_hint =
+    " The number of spheres is \"spheres\"; that of repetitions is \"realizations\".";
+constexpr std::string_view taps_hint =
+    " Taps are stages of \"protocol\": [{\"tap\": {\"dilate\": 0.02}, \"count\": 100}].";
+constexpr std::string_view container_hint =
+    " The box is \"container\": {\"sides\": \"periodic\", \"width\": 8}, in sphere diameters, with "
+    "a "
+    "floor at z = 0 and an open top.";
+constexpr std::string_view tube_hint =
+    " A tube is {\"sides\": \"cylinder\", \"diameter\": 10}, a box {\"sides\": \"walls\", "
+    "\"width\": 10}, "
+    "both in sphere diameters.";
+constexpr std::string_view top_hint = " The top is open; \"fully_periodic\" alone has a height.";
+constexpr std::string_view temperature_hint =
+    " Grains have no temperature. Monte Carlo moves upwards have the \"beta\" of \"metropolis\", "
+    "in "
+    "units of 1/(m g d).";
+constexpr std::string_view gravity_hint =
+    " Gravity acts along -z. Its value is a key of \"engine\": {\"discrete_element\": ...}; Monte "
+    "Carlo "
+    "needs none.";
+constexpr std::string_view fraction_hint =
+    " The packing fraction is a result (\"observe\": [\"bulk_fraction\"]); \"start\" and "
+    "\"protocol\" determine it.";
 
-// Names that papers give to quantities, and what scenes have for them.
-constexpr std::pair<std::string_view, std::string_view> known_elsewhere[] = {
-    {"acceleration", strength_hint},
-    {"gamma", strength_hint},
-    {"Gamma", strength_hint},
-    {"amplitude", strength_hint},
-    {"intensity", strength_hint},
-    {"epsilon", strength_hint},
-    {"eps", strength_hint},
-    {"polydispersity", sizes_hint},
-    {"diameters", sizes_hint},
-    {"radius", sizes_hint},
-    {"size_distribution", sizes_hint},
-    {"friction", friction_hint},
-    {"restitution", friction_hint},
-    {"mu", friction_hint}};
+/// A name that papers give to a quantity, and what scenes have for it.
+struct KnownName {
+  std::string_view name, hint;
+  std::string_view beside = "";  // a key that is allowed in the place where this hint applies
+};
+// The first that fits is given.
+constexpr KnownName known_elsewhere[] = {{"radius", tube_hint, "sides"},
+                                         {"diameter", tube_hint, "sides"},
+                                         {"height", top_hint, "sides"},
+                                         {"depth", top_hint, "sides"},
+                                         {"acceleration", strength_hint},
+                                         {"gamma", strength_hint},
+                                         {"Gamma", strength_hint},
+                                         {"amplitude", strength_hint},
+                                         {"frequency", strength_hint},
+                                         {"intensity", strength_hint},
+                                         {"strength", strength_hint},
+                                         {"epsilon", strength_hint},
+                                         {"eps", strength_hint},
+                                         {"polydispersity", sizes_hint},
+                                         {"diameters", sizes_hint},
+                                         {"diameter", sizes_hint},
+                                         {"radius", sizes_hint},
+                                         {"radii", sizes_hint},
+                                         {"size_distribution", sizes_hint},
+                                         {"size_ratio", sizes_hint},
+                                         {"density", sizes_hint},
+                                         {"friction", friction_hint},
+                                         {"restitution", friction_hint},
+                                         {"stiffness", friction_hint},
+                                         {"cohesion", friction_hint},
+                                         {"mu", friction_hint},
+                                         {"N", number_hint},
+                                         {"n", number_hint},
+                                         {"n_spheres", number_hint},
+                                         {"n_particles", number_hint},
+                                         {"particles", number_hint},
+                                         {"grains", number_hint},
+                                         {"replicas", number_hint},
+                                         {"runs", number_hint},
+                                         {"samples", number_hint},
+                                         {"taps", taps_hint},
+                                         {"n_taps", taps_hint},
+                                         {"cycles", taps_hint},
+                                         {"tap", taps_hint},
+                                         {"box", container_hint},
+                                         {"box_size", container_hint},
+                                         {"boundary", container_hint},
+                                         {"boundary_conditions", container_hint},
+                                         {"pbc", container_hint},
+                                         {"periodic", container_hint},
+                                         {"temperature", temperature_hint},
+                                         {"kT", temperature_hint},
+                                         {"gravity", gravity_hint},
+                                         {"g", gravity_hint},
+                                         {"packing_fraction", fraction_hint},
+                                         {"volume_fraction", fraction_hint},
+                                         {"solids_fraction", fraction_hint},
+                                         {"phi", fraction_hint}};
 
 }  // namespace
 
 std::string key_hint(std::string_view written, const std::vector<std::string>& candidates) {
-  const auto known = std::ranges::find(known_elsewhere, written,
-                                       &std::pair<std::string_view, std::string_view>::first);
-  const std::string nearest = did_you_mean(written, candidates);
-  if (!nearest.empty() || known == std::end(known_elsewhere)) return nearest;
-  return std::string(known->second);
+  const auto fits = [&](const KnownName& known) {
+    return known.name == written &&
+           (known.beside.empty() ||
+            std::ranges::find(candidates, known.beside) != candidates.end());
+  };
+  const auto known = std::ranges::find_if(known_elsewhere, fits);
+  if (known == std::end(known_elsewhere)) return did_you_mean(written, candidates);
+  // A word of the field is no slip of a longer one, but it may be that of its singular or plural.
+  const auto slip = std::ranges::find_if(candidates, [&](const std::string& candidate) {
+    return written.size() > 3 && edit_distance(written, candidate) == 1;
+  });
+  return slip != candidates.end() ? fmt::format(" Did you mean \"{}\"?", *slip)
+                                  : std::string(known->hint);
 }
 
 }  // namespace jostle::inline config

@@ -73,7 +73,7 @@ export function runSection(chapter) {
     ["bed", run.points[0]?.bed ?? ""],
     ["taps", range(run.points.map((point) => point.taps))],
     ["sweep points", count(run.n_points)],
-    ["realizations", `${count(run.realizations_a_point)} a sweep point: ${states}`],
+    ["realizations", `${count(run.realizations_a_point)} per sweep point: ${states}`],
     // Work of different engines does not add up.
     ["cost", `${run.unit ? `${count(tally.units)} ${run.unit}, ` : ""}${duration(tally.seconds)} of one core`],
     ["seed", run.points[0]?.seed ?? ""],

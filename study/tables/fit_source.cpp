@@ -37,6 +37,7 @@ FitSource point_curve(const ResultsFile& file, std::uint32_t point, const std::s
   source.label = file.study().points[point].label;
   source.title = fmt::format("{} {}sweep point {}", observable,
                              source.label.empty() ? "" : source.label + ", ", point);
+  source.units = {series.label().units, "taps"};
   source.curve = collect(series, range);
   if (!source.curve.t.empty()) {
     source.title += fmt::format(", {} realization{}", series.n_realizations(),

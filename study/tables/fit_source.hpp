@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fitting/curve.hpp"
+#include "fitting/report.hpp"
 #include "results/file/results_file.hpp"
 
 namespace jostle::inline study {
@@ -18,6 +19,7 @@ struct FitSource {
   std::optional<std::uint32_t> point;
   Curve curve;                          // with its realizations, where there are two or more
   std::vector<std::string> notes = {};  // on how a measured curve was read, a sentence each
+  CurveUnits units = {};                // units in the heading of a measured curve
 };
 
 /// A range of t, both ends included.

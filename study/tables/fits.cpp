@@ -80,24 +80,8 @@ FitOutcome fit_model(const Model& model, const Curve& curve, const FitManner& ma
   return outcome;
 }
 
-// In units of the observable, X, and of taps, t.
-const char* unit_text(ParameterUnit unit) {
-  switch (unit) {
-    case ParameterUnit::none:
-      return "1";
-    case ParameterUnit::value:
-      return "X";
-    case ParameterUnit::time:
-      return "t";
-    case ParameterUnit::value_per_time:
-      return "X/t";
-    case ParameterUnit::value_time:
-      return "X t";
-    case ParameterUnit::per_time:
-      return "1/t";
-  }
-  return "";
-}
+/// Units of the observable and of taps, as tables name them.
+const CurveUnits table_units = {"X", "t"};
 
 std::string lines(const std::vector<std::string>& texts) {
   std::string all;
@@ -115,7 +99,7 @@ struct EstimateColumns {
   explicit EstimateColumns(const std::vector<Estimate>& estimates) {
     for (const Estimate& estimate : estimates) {
       names.push_back(estimate.parameter.name);
-      units.push_back(unit_text(estimate.parameter.unit));
+      units.push_back(unit_text(estimate.parameter.unit, table_units));
       statements.push_back(estimate.statement);
       found.push_back(name_of(estimate.identifiability));
       value.push_back(estimate.has_value() ? estimate.value : not_a_number);

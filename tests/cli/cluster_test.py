@@ -67,7 +67,7 @@ class Script(Case):
                           ["--folder", "line\u2028break"], ["--folder", "c1\u009b"]):
             with self.subTest(arguments=arguments):
                 done = self.script("--jobs", 1, *arguments, expect=BAD_INPUT)
-                self.assertIn("has a character that no line of a script can hold or show", done.stderr)
+                self.assertIn("has a character that a line of a script cannot contain or show", done.stderr)
                 self.assertEqual(done.stdout, "")
                 self.assertNotRegex(done.stderr, "[\u202e\x1b\u2028\u009b]")
         # The command line, which is no more than a comment, the rest is escaped.
@@ -129,7 +129,7 @@ class Script(Case):
     def test_out_of_time_it_goes_back_into_the_queue_and_goes_on_there(self):
         code, out = self.slow_task(signal.SIGCONT, signal.SIGUSR1)
         self.assertEqual(code, STOPPED, out)
-        self.assertIn("back in the queue", out)
+        self.assertIn("requeued", out)
         self.assertEqual(self.requeued(), "requeue 70_1\n")
         self.assertIn("stopped by SIGUSR1", (self.folder / "tiny.shards/1.log").read_text())
         self.assertEqual(self.run_task(1, restarts=1)[0], 0)
@@ -141,7 +141,7 @@ class Script(Case):
     def test_a_cancelled_job_stops_and_does_not_come_back(self):
         code, out = self.slow_task(signal.SIGTERM, signal.SIGCONT, signal.SIGTERM)
         self.assertEqual(code, STOPPED, out)
-        self.assertIn("not put back", out)
+        self.assertIn("not requeued", out)
         self.assertEqual(self.requeued(), "")
         self.assertEqual(self.info("tiny.shards/1.h5")["state"], "interrupted")
 

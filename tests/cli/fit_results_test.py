@@ -120,7 +120,7 @@ class Kept(Case):
         self.write(changed(TINY, protocol=protocol, fits=asked))
         done = self.run_scene()
         rows = done.stdout.split("fits of mean_height\n")[1].split("a(b):")[0].splitlines()
-        self.assertEqual(rows[0].split(), ["curve", "law", "verdict", "asymptote"])  # nothing to compare
+        self.assertEqual(rows[0].split(), ["sweep", "point", "law", "verdict", "asymptote"])  # nothing to compare
         self.assertNotIn("difference", done.stdout)
         self.assertEqual([row.split()[:4] for row in rows[1:]],
                          [["dilate", "=", value, "inverse_log"] for value in ("0.02", "0.1")])
@@ -136,7 +136,7 @@ class Kept(Case):
         self.write(changed(TINY, protocol=protocol, fits=asked))
         done = self.run_scene("--force")
         rows = done.stdout.split("fits of mean_height\n")[1].split("a(b):")[0].splitlines()
-        self.assertEqual(rows[0].split(), ["curve", "law", "verdict", "difference", "asymptote"])
+        self.assertEqual(rows[0].split(), ["sweep", "point", "law", "verdict", "difference", "asymptote"])
         self.assertEqual([row.split()[3] for row in rows[1:]], ["inverse_log", "kww"] * 2)
         self.assertEqual(len(self.tables()), 4)
 

@@ -160,6 +160,25 @@ class Terminal(Case):
                     self.jostle(*words[1:])
         self.assertNotIn("next:", self.run_scene("--shard", "1/2", "-o", "part.h5").stdout)
 
+    def test_a_run_ends_with_results_and_not_with_every_table(self):
+        self.write(changed(SWEEP, fits=[{"observable": "mean_height", "model": "inverse_log"},
+                                        {"observable": "bulk_fraction", "model": "inverse_log"}],
+                           analyse={"steady": [{"observable": "mean_height", "last": 32}],
+                                    "sweep": [{"observable": "bulk_fraction"}]},
+                           structure={"coordination": {}, "order": {}}))
+        short = self.run_scene(environment={"COLUMNS": ""}).stdout
+        self.assert_narrow(short, 80)
+        self.assertEqual(short.count("fits of "), 2)
+        results = short.split("steady/mean_height\n")[1]
+        self.assertEqual(re.findall(r"(?m)^  dilate = (\S+)  (?:not )?\w+", results), ["0.02", "0.05", "0.1", "0.2"])
+        self.assertRegex(results, r"stored\s+tables:\s+coordination,\s+order,\s+comparison/coordination,\s+comparison/order\n")
+        self.assertLess(len(short.splitlines()), 120)
+        full = self.run_scene("--force", "--verbose", environment={"COLUMNS": ""}).stdout
+        self.assertGreater(len(full.splitlines()), 3 * len(short.splitlines()))
+        for name in ("point_0003/steady/mean_height", "point_0003/coordination", "blocked_error"):
+            self.assertIn(name, full)
+            self.assertNotIn(name, short)
+
     def test_proposals_are_of_the_observable_that_the_scene_studies(self):
         for scene, name in ((BED, "bottom_fraction"),
                             (changed(BED, analyse={"steady": [{"observable": "mean_height", "last": 32}]}),

@@ -120,6 +120,8 @@ DrawnFigures figures_of(const FittedCurve& measured) {
     table.notes.emplace_back("measured", is_mean      ? "realizations"
                                          : has_errors ? "errors"
                                                       : "values");
+    table.notes.emplace_back("t_unit", measured.source.units.t);
+    table.notes.emplace_back("x_unit", measured.source.units.x);
     tables.push_back({"fits", thinned(table, thinning)});
   }
   return {figures_of(DrawnFile(std::move(tables))), {}, false};

@@ -14,7 +14,8 @@ FigureAxis t_axis(const TableView& table) {
   if (table.note("measured").empty()) return {"taps t", AxisKind::taps};
   const std::vector<double> t = table.axis("t");
   const auto [first, last] = std::ranges::minmax(t);
-  return {"t", first > 0 && last > 100 * first ? AxisKind::logarithmic : AxisKind::linear};
+  return {"t" + unit_text(table.note("t_unit")),
+          first > 0 && last > 100 * first ? AxisKind::logarithmic : AxisKind::linear};
 }
 
 std::string data_caption(const TableView& table, const std::string& range) {
@@ -45,7 +46,7 @@ FigurePanel data_panel(const std::vector<TableView>& laws, const std::string& ob
       .title = "Fits of " + words(observable),
       .caption = data_caption(first, range),
       .x = t_axis(first),
-      .y = {axis_label(observable, "")},
+      .y = {axis_label(observable, first.note("x_unit"))},
       .series = {{.name = "data",
                   .colour = ink_colour(),
                   .drawn = Drawn::points,

@@ -51,23 +51,26 @@ std::string formula_html(const std::string& formula, const std::string& source) 
   return fmt::format("<p><code>X = {}</code> {}</p>\n", html_text(formula), html_text(source));
 }
 
-std::string estimates_html(const std::vector<Estimate>& estimates) {
+std::string estimates_html(const std::vector<Estimate>& estimates, const CurveUnits& units) {
   std::string text =
-      "<table><tr><th>parameter</th><th>value</th><th>95 % interval</th><th>statement</th></tr>\n";
+      "<table><tr><th>parameter</th><th>unit</th><th>value</th><th>95 % interval</th>"
+      "<th>statement</th></tr>\n";
   for (const Estimate& estimate : estimates) {
-    text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                        html_text(estimate.parameter.name), html_text(estimate_text(estimate)),
-                        html_text(interval_text(estimate, 1)), html_text(estimate.statement));
+    text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                        html_text(estimate.parameter.name),
+                        html_text(unit_text(estimate.parameter.unit, units)),
+                        html_text(estimate_text(estimate)), html_text(interval_text(estimate, 1)),
+                        html_text(estimate.statement));
   }
   return text + "</table>\n";
 }
 
-std::string law_html(const Fit& fit) {
+std::string law_html(const Fit& fit, const CurveUnits& units) {
   std::string text = fmt::format("<h2>{}</h2>\n", html_text(fit.model));
   text += formula_html(fit.formula, fit.source);
   for (const ParameterTable& table : parameter_tables(fit)) {
     if (!table.heading.empty()) text += paragraph(table.heading + ":");
-    text += estimates_html(table.estimates);
+    text += estimates_html(table.estimates, units);
   }
   return text + listed(fit.remarks);
 }
@@ -89,7 +92,7 @@ std::string measured_page(const FittedCurve& fitted, std::span<const PageFigure>
   text += listed(fitted.source.notes);
   if (!fits.empty()) text += paragraph(verdict(fits, fitted.comparison));
   for (const PageFigure& figure : figures) text += figure_html(figure);
-  for (const Fit& fit : fits) text += law_html(fit);
+  for (const Fit& fit : fits) text += law_html(fit, fitted.source.units);
   text += listed(refusals);
   text +=
       "<p class=\"small\">a(b): b, in the last digits of a, is half the 68 % interval; -: that "

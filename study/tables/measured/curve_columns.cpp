@@ -33,6 +33,16 @@ std::string plain_name(const std::string& name) {
   return plain;
 }
 
+/// "s" of "Time [s]"; empty without brackets, and for a text that is too long for a unit.
+std::string unit_of(const std::string& name) {
+  const std::size_t open = name.find_first_of("([");
+  if (open == std::string::npos || open == 0) return "";
+  const std::size_t close = name.find_first_of(")]", open);
+  if (close == std::string::npos) return "";
+  const std::string unit = printable(name.substr(open + 1, close - open - 1), 40);
+  return unit.size() > 12 ? "" : unit;
+}
+
 template <class Names>
 bool is_in(const Names& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
@@ -164,6 +174,11 @@ ColumnRoles roles_by_name(const std::string& path, std::vector<std::string> name
   } else {
     take_realizations(path, found, roles);
   }
+  roles.t_unit = unit_of(roles.names[roles.t]);
+  roles.x_unit = unit_of(roles.names[roles.x.front()]);
+  const auto has_it = [&](std::size_t c) { return unit_of(roles.names[c]) == roles.x_unit; };
+  // Realizations may be named "run (1)", "run (2)".
+  if (!std::ranges::all_of(roles.x, has_it)) roles.x_unit.clear();
   return roles;
 }
 

@@ -23,6 +23,7 @@ struct ColumnRoles {
   std::size_t n_columns = 0;
   std::vector<std::string> names;  // [n_columns], of the heading, else "t", "X", "sigma", "X1", ...
   std::size_t first_row = 0;       // first row of the text's lines
+  std::string t_unit, x_unit;      // in brackets behind a name, "s" of "Time [s]"; else empty
   std::vector<std::string> notes;  // on columns that are not used, a sentence each
 };
 

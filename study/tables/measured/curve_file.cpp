@@ -236,7 +236,7 @@ MeasuredCurve read_curve(const std::string& path, const CurveReading& reading) {
   const ColumnRoles roles = column_roles(path, text, reading.columns);
   const Reader reader(path, roles);
   Rows rows = rows_of(reader, text, roles, reading);
-  MeasuredCurve measured{{}, roles.notes};
+  MeasuredCurve measured{{}, roles.notes, {roles.x_unit, roles.t_unit}};
   if (rows.without_value > 0) {
     measured.notes.push_back(
         fmt::format("{} without a value: left out.", counted_rows(rows.without_value)));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fitting/curve.hpp"
+#include "fitting/report.hpp"
 #include "study/tables/measured/curve_columns.hpp"
 
 namespace jostle::inline study {
@@ -26,6 +27,7 @@ struct CurveReading {
 struct MeasuredCurve {
   Curve curve;
   std::vector<std::string> notes;  // a sentence each
+  CurveUnits units = {};           // units in the heading
 };
 
 /// Reads a measured curve from a text file: columns t and X, maybe sigma of X; or t and a column of

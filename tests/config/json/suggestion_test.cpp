@@ -28,6 +28,13 @@ TEST_CASE("A quantity that papers name otherwise has a hint, a misspelt key its 
   CHECK(key_hint("acceleration", keys).find("Gamma") != std::string::npos);
   CHECK(key_hint("polydispersity", keys).find("kinds of a mixture") != std::string::npos);
   CHECK(key_hint("friction", keys).find("discrete_element") != std::string::npos);
+  CHECK(key_hint("gravity", keys).find("along -z") != std::string::npos);
+  CHECK(key_hint("n_particles", keys).find("\"spheres\"") != std::string::npos);
+  // "acceleration" is near "realizations", and no slip of it.
+  CHECK(key_hint("acceleration", {"realizations"}).find("Gamma") != std::string::npos);
+  CHECK(key_hint("diameters", {"diameter"}) == " Did you mean \"diameter\"?");
+  CHECK(key_hint("radius", keys).find("kinds of a mixture") != std::string::npos);
+  CHECK(key_hint("radius", {"sides", "width"}).find("\"cylinder\"") != std::string::npos);
   CHECK(key_hint("sphere", keys) == " Did you mean \"spheres\"?");
   CHECK(key_hint("colour", keys).empty());
 }

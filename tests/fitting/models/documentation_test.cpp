@@ -58,6 +58,10 @@ TEST_CASE("a report for people names what it gives") {
     CHECK(contains(report, part));
   }
   CHECK_FALSE(contains(report, "nan"));
+  CHECK(contains(report, "  units: X_inf, dX, Z_inf, Z_0 in [X]; tau in [t]\n"));
+  CHECK(contains(describe(wide, ReportDetail::brief, {"mm", "s"}),
+                 "  units: X_inf, dX, Z_inf, Z_0 in mm; tau in s\n"));
+  CHECK(contains(describe(wide, ReportDetail::brief, {"1", "taps"}), "  units: tau in taps\n"));
   const Fit other = std::get<Fit>(fit(kww, curve));
   const LawComparison comparison = compare_laws({{&inverse_log, &wide}, {&kww, &other}}, curve);
   CHECK(contains(compare({wide, other}, comparison), "kww"));

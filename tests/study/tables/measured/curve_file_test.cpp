@@ -77,6 +77,19 @@ TEST_CASE("realizations are all other columns, whatever their names") {
   }
 }
 
+TEST_CASE("units are read in brackets behind the names of t and X") {
+  const auto units = [](const char* text, const CurveReading& reading) {
+    const CurveUnits found = curve_of(text, reading).units;
+    return found.t + ";" + found.x;
+  };
+  CHECK(units("Time [s],X (mm)\n1,2\n2,3\n", {}) == "s;mm");
+  CHECK(units("t,X\n1,2\n2,3\n", {}) == ";");
+  CHECK(units("1,2\n2,3\n", {}) == ";");
+  CHECK(units("t [min],a [mm],b [mm]\n1,2,4\n2,3,5\n", several) == "min;mm");
+  CHECK(units("t,run (1),run (2)\n1,2,4\n2,3,5\n", several) == ";");
+  CHECK(units("t (as read off the figure),X\n1,2\n2,3\n", {}) == ";");
+}
+
 TEST_CASE("headings that are unknown or ambiguous are refused with what was found") {
   for (const char* text :
        {"t,phi\n1,2\n2,3\n", "a,b\n1,2\n", "t,X,std\n1,2,3\n", "t,X,value\n1,2,3\n",
