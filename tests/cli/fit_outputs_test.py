@@ -11,7 +11,7 @@ from support import BAD_INPUT, UNFOLDED, Case, some
 
 ROW = re.compile(r"^  (\S+) +(\S+) +(no limit|[<>] \S+|\S+ to \S+) +(identified|wide|only a lower limit|"
                  r"only an upper limit|not identifiable)$", re.M)
-CELLS = re.compile(r"<tr><td>([^<]*)</td><td>([^<]*)</td><td>([^<]*)</td><td>[^<]*</td></tr>")
+CELLS = re.compile(r"<tr><td>([^<]*)</td><td>[^<]*</td><td>([^<]*)</td><td>([^<]*)</td><td>[^<]*</td></tr>")
 
 
 def hyperbola(t):
@@ -99,6 +99,15 @@ class OneFit(WithEnsembles):
     def test_errors_are_given_only_where_a_column_gives_them(self):
         self.ensemble("a.csv", stretched, 1)
         self.assertFalse(self.fits("a.csv", "--model", "kww")[0]["sigma_given"])
+
+    def test_parameters_have_the_units_of_the_heading(self):
+        self.ensemble("a.csv", stretched, 1, header="Time [min]," + ",".join(f"r{r} [mm]" for r in range(4)))
+        done = self.jostle("fit", "a.csv", "--realizations", "--model", "kww", "--page", "a.html",
+                           environment=UNFOLDED)
+        self.assertRegex(done.stdout, r"(?m)^  units: rho_inf, rho_0 in mm; tau in min$")
+        page = (self.folder / "a.html").read_text()
+        for name, unit in (("rho_inf", "mm"), ("tau", "min"), ("beta", "1")):
+            self.assertIn(f"<tr><td>{name}</td><td>{unit}</td>", page)
 
     def test_a_fitted_law_is_no_realization(self):
         self.ensemble("a.csv", stretched, 1)
