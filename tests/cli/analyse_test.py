@@ -429,7 +429,8 @@ class Analysed(Case):
                  "spectrum": [{"observable": "bottom_fraction"}]}
         self.write(changed(TAPPED, analyse=asked))
         done = self.run_scene()
-        self.assertIn("autocorrelation_time", done.stdout)
+        self.assertIn("\nsteady/mean_height\n  dilate = ", done.stdout)
+        self.assertIn("slope ", done.stdout.split("\nspectrum/bottom_fraction\n")[1])
         names = [f"analysis/point_000{point}/{kind}" for point in (0, 1)
                  for kind in ("spectrum/bottom_fraction", "steady/mean_height")]
         self.assertEqual(self.tables(), names)
