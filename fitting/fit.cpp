@@ -11,6 +11,7 @@
 #include "fitting/intervals/fit_errors.hpp"
 #include "fitting/intervals/fit_statistics.hpp"
 #include "fitting/intervals/profile.hpp"
+#include "fitting/intervals/student_intervals.hpp"
 #include "fitting/limit_fit.hpp"
 #include "fitting/numbers.hpp"
 #include "fitting/refusal.hpp"
@@ -212,9 +213,11 @@ bool Fitter::find_intervals(const DependentErrors& errors, Fit& fit) {
   ProfileProblem problem{model_, searched_,       values_,
                          free_,  best_.cost,      fit.sigma_given ? 1 : fit.reduced_chi2,
                          {0, 0}, options_.solver, errors.level_weight};
+  const bool differ_in_shape = realizations_differ_in_shape(errors, fit);
   Eigen::Index variable = 0;
   for (std::size_t j = 0; j < free_.size(); ++j) {
     if (!free_[j]) continue;
+    const double error = std::sqrt(errors.covariance(variable, variable));
     const double longer = std::sqrt(errors.inflation[variable++]);
     for (int level = 0; level < 2; ++level) {
       problem.thresholds[level] = longer * two_sided(interval_levels[level], fit.error_dof);
@@ -237,6 +240,7 @@ bool Fitter::find_intervals(const DependentErrors& errors, Fit& fit) {
     }
     estimate.intervals[0] = found.intervals[0];
     estimate.intervals[1] = found.intervals[1];
+    if (differ_in_shape) use_student_intervals(curve_, error, fit.error_dof, estimate);
   }
   return true;
 }

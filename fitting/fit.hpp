@@ -76,7 +76,7 @@ struct Estimate {
   /// residuals. For Student's t of the fit's error_dof, which makes half the 68 % interval of it;
   /// without intervals that of the linear problem.
   double error = 0;
-  Interval intervals[2];  // profile likelihood at interval_levels; the value itself if fixed
+  Interval intervals[2];  // at interval_levels, profiled or Student's; the value itself if fixed
   Identifiability identifiability = Identifiability::not_examined;
   std::string statement;  // this in words
 

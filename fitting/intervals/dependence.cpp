@@ -55,6 +55,7 @@ DependentErrors errors_of(const Influence& found, const Eigen::MatrixXd& scatter
   DependentErrors errors;
   const Eigen::MatrixXd moved = compliance * scatter * compliance;
   errors.covariance = found.changes.transpose() * (variance * moved) * found.changes;
+  errors.independent = found.changes.transpose() * compliance * found.changes;
   errors.inflation.resize(found.changes.cols());
   for (Eigen::Index j = 0; j < errors.inflation.size(); ++j) {
     const Eigen::VectorXd direction = found.changes.col(j).normalized();

@@ -15,9 +15,12 @@ namespace jostle::inline fitting {
 /// Errors of least squares that count the dependence of its points.
 struct DependentErrors {
   Eigen::MatrixXd covariance;  // [n_variables, n_variables]
-  /// [n_variables], > 0: the variance of each variable over what the second derivatives of the
-  /// squares give it with independent points of unit variance, with the level weighed. A profile's
-  /// threshold grows by its root.
+  /// [n_variables, n_variables]: what the second derivatives of the squares give with independent
+  /// points of unit variance, with the level weighed. A profile moves the variables along its
+  /// columns.
+  Eigen::MatrixXd independent;
+  /// [n_variables], > 0: the variance of each variable over its variance in `independent`. A
+  /// profile's threshold grows by its root.
   Eigen::VectorXd inflation;
   /// The weight of the residuals' weighted mean in a profile, in (0, 1]: see level_weight().
   double level_weight = 1;

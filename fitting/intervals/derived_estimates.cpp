@@ -7,6 +7,7 @@
 #include "fitting/intervals/fit_errors.hpp"
 #include "fitting/intervals/fit_statistics.hpp"
 #include "fitting/intervals/profile.hpp"
+#include "fitting/intervals/student_intervals.hpp"
 #include "fitting/models/combination.hpp"
 #include "fitting/numbers.hpp"
 
@@ -69,6 +70,10 @@ Estimate estimate_in(const Rewritten& other, std::size_t index, const FittedCurv
   if (found.better) return estimate;
   estimate.intervals[0] = found.intervals[0];
   estimate.intervals[1] = found.intervals[1];
+  if (realizations_differ_in_shape(errors, counts)) {
+    const double error = std::sqrt(errors.covariance(variable, variable));
+    use_student_intervals(fitted.curve, error, fit.error_dof, estimate);
+  }
   return estimate;
 }
 

@@ -10,10 +10,8 @@ namespace jostle::inline fitting {
 
 namespace {
 
-constexpr double reach_of_logarithm = 13.8;  // a factor 10^6
 constexpr double reach_of_errors = 1e4;
-constexpr double reach_of_values = 100;  // or of ranges of X
-constexpr double flat = 0.01;            // rise of z over the last half of the way, in thresholds
+constexpr double flat = 0.01;  // rise of z over the last half of the way, in thresholds
 
 // z as a function of the distance on one side. An end of an interval is closed by a settled fit
 // alone, and where z rises to it without a jump.

@@ -6,6 +6,11 @@
 
 namespace jostle::inline fitting {
 
+/// How far from the minimum an end is searched: the logarithm of a factor, and values or ranges of
+/// X.
+inline constexpr double reach_of_logarithm = 13.8;  // a factor 10^6
+inline constexpr double reach_of_values = 100;
+
 /// A minimum whose neighbourhood is explored with one parameter held at a time.
 struct ProfileProblem {
   const Model& model;

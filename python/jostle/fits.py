@@ -14,7 +14,8 @@ def _number(value: float | None, unknown: float = math.nan) -> float:
 @dataclasses.dataclass(frozen=True)
 class Parameter:
     """value, error (standard error): NaN where the data do not limit the parameter. interval_68,
-    interval_95: by the profile of the sum of squares; an open end is infinite. statement: in words."""
+    interval_95: by the profile of the sum of squares, or Student's t where realizations differ in
+    shape; an open end is infinite. statement: in words."""
 
     value: float
     error: float
