@@ -12,8 +12,9 @@ namespace jostle::inline fitting {
 
 namespace {
 
-constexpr double shape_level = 0.01;  // of the test for scatter in shape, per pair of variables
-constexpr double agreement = 0.25;    // of two ends, in distances to the value
+constexpr double shape_level =
+    0.01;                           // level per pair of variables of the test for scatter in shape
+constexpr double agreement = 0.25;  // tolerance of two ends, in distances to the value
 
 // The farthest end in the variable.
 double farthest(const Curve& curve, const Estimate& estimate, const Transform& transform) {

@@ -33,8 +33,8 @@ struct Ensemble {
   int n_realizations = 6;
 };
 
-constexpr double relative_scatter = 0.05;  // of each parameter
-constexpr double level_scatter = 3;        // in noise
+constexpr double relative_scatter = 0.05;  // deviation of each parameter, relative
+constexpr double level_scatter = 3;        // deviation of levels, in noise
 
 std::vector<double> times(const Law& law) {
   return geometric(1, law.last, 60);
