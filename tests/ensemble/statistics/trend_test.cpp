@@ -81,7 +81,7 @@ TEST_CASE("The errors within series are the scatter of slopes and halves", "[sta
                std::tuple(0.3, std::size_t{103}, std::size_t{4000}));
   constexpr std::size_t realizations = 2;
   Moments lines, halves;
-  Moments line_variances, halves_variances;  // of trends whose errors within series are not doubted
+  Moments line_variances, halves_variances;  // where errors within series are not doubted
   for (std::size_t e = 0; e < ensembles; ++e) {
     TrendTest test;
     for (std::size_t r = 0; r < realizations; ++r) {
