@@ -34,12 +34,12 @@ Solution solve_ours(const Residuals& residuals, const Eigen::VectorXd& start, do
   return {minimum.x, minimum.iterations, minimum.evaluations, minimum.fallback};
 }
 
-Eigen::VectorXd copied(const gsl_vector* from) {
-  Eigen::VectorXd to(static_cast<Eigen::Index>(from->size));
-  for (std::size_t i = 0; i < from->size; ++i) {
-    to[static_cast<Eigen::Index>(i)] = gsl_vector_get(from, i);
+Eigen::VectorXd copied(const gsl_vector* source) {
+  Eigen::VectorXd copy(static_cast<Eigen::Index>(source->size));
+  for (std::size_t i = 0; i < source->size; ++i) {
+    copy[static_cast<Eigen::Index>(i)] = gsl_vector_get(source, i);
   }
-  return to;
+  return copy;
 }
 
 // Tolerances at rounding: all solvers are asked for all the digits there are.
@@ -53,8 +53,8 @@ Solution solve_gsl(const Residuals& residuals, const Eigen::VectorXd& start, dou
   function.n = n;
   function.p = p;
   function.params = const_cast<Residuals*>(&residuals);
-  function.f = [](const gsl_vector* x, void* of, gsl_vector* f) {
-    const auto& r = *static_cast<const Residuals*>(of);
+  function.f = [](const gsl_vector* x, void* parameters, gsl_vector* f) {
+    const auto& r = *static_cast<const Residuals*>(parameters);
     Eigen::VectorXd values(r.n_residuals());
     r.values(copied(x), values);
     for (std::size_t i = 0; i < f->size; ++i) {
@@ -62,8 +62,8 @@ Solution solve_gsl(const Residuals& residuals, const Eigen::VectorXd& start, dou
     }
     return int{GSL_SUCCESS};
   };
-  function.df = [](const gsl_vector* x, void* of, gsl_matrix* j) {
-    const auto& r = *static_cast<const Residuals*>(of);
+  function.df = [](const gsl_vector* x, void* parameters, gsl_matrix* j) {
+    const auto& r = *static_cast<const Residuals*>(parameters);
     Eigen::VectorXd values(r.n_residuals());
     Eigen::MatrixXd jacobian(r.n_residuals(), r.n_variables());
     r.values_and_jacobian(copied(x), values, jacobian);
@@ -78,8 +78,8 @@ Solution solve_gsl(const Residuals& residuals, const Eigen::VectorXd& start, dou
   const auto view = gsl_vector_const_view_array(start.data(), p);
   Solution solution{start, 0, 0, 0};
   if (gsl_multifit_nlinear_init(&view.vector, &function, work) == GSL_SUCCESS) {
-    int why = 0;
-    gsl_multifit_nlinear_driver(2000, 1e-14, 1e-15, 0, nullptr, nullptr, &why, work);
+    int info = 0;
+    gsl_multifit_nlinear_driver(2000, 1e-14, 1e-15, 0, nullptr, nullptr, &info, work);
     solution.x = copied(gsl_multifit_nlinear_position(work));
     solution.iterations = static_cast<int>(gsl_multifit_nlinear_niter(work));
     solution.evaluations = static_cast<int>(function.nevalf);
@@ -179,13 +179,13 @@ std::array<Measured, 3> measure(const Residuals& residuals, const Eigen::VectorX
 
 // Times of the others over ours, where they found the minimum to 4 digits at least.
 struct Ratios {
-  std::vector<double> of[3];
+  std::vector<double> by_solver[3];
   int missed[3] = {0, 0, 0};
 };
 
-void print_row(const std::string& what, const std::array<Measured, 3>& measured,
+void print_row(const std::string& label, const std::array<Measured, 3>& measured,
                const std::vector<double>& certified, Ratios& ratios) {
-  fmt::print("{:<18}", what);
+  fmt::print("{:<18}", label);
   for (std::size_t s = 0; s < measured.size(); ++s) {
     const double found = digits(measured[s].solution.x, certified);
     fmt::print("{:6.1f} {:5} {:5} {:8.1f}", found, measured[s].solution.iterations,
@@ -193,7 +193,7 @@ void print_row(const std::string& what, const std::array<Measured, 3>& measured,
     if (found < 4) {
       ++ratios.missed[s];
     } else {
-      ratios.of[s].push_back(measured[s].seconds / measured[0].seconds);
+      ratios.by_solver[s].push_back(measured[s].seconds / measured[0].seconds);
     }
   }
   fmt::print("{}\n", measured[0].solution.fallback > 0 ? "  fallback" : "");
@@ -201,15 +201,15 @@ void print_row(const std::string& what, const std::array<Measured, 3>& measured,
 
 void print_summary(Ratios& ratios) {
   for (std::size_t s = 1; s < solvers.size(); ++s) {
-    auto& of = ratios.of[s];
-    std::ranges::sort(of);
+    auto& ratio_list = ratios.by_solver[s];
+    std::ranges::sort(ratio_list);
     double product = 0;
-    for (const double ratio : of) product += std::log(ratio);
+    for (const double ratio : ratio_list) product += std::log(ratio);
     fmt::print(
         "{}: {:.2f} times our time in the geometric mean ({:.2f} to {:.2f}), fewer than 4 "
         "digits on {} of 54\n",
-        solvers[s].first, std::exp(product / static_cast<double>(of.size())), of.front(), of.back(),
-        ratios.missed[s]);
+        solvers[s].first, std::exp(product / static_cast<double>(ratio_list.size())),
+        ratio_list.front(), ratio_list.back(), ratios.missed[s]);
   }
   fmt::print("jostle: fewer than 4 digits on {} of 54\n\n", ratios.missed[0]);
 }

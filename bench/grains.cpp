@@ -143,9 +143,10 @@ void write_for_lammps(const std::string& folder, const GrainLoop& loop,
     const Vec3 r = bed.centres[i];
     data << fmt::format("{} 1 1.0 {} {} {} {}\n", i + 1, density, r.x, r.y, r.z);
   }
-  const auto law = [](const LawConstants& of, double mass) {
-    return fmt::format("{} {} {} {} {} 1", of.stiffness, of.tangential, of.damping / mass,
-                       of.shear_damping / mass, of.friction);
+  const auto law = [](const LawConstants& constants, double mass) {
+    return fmt::format("{} {} {} {} {} 1", constants.stiffness, constants.tangential,
+                       constants.damping / mass, constants.shear_damping / mass,
+                       constants.friction);
   };
   const auto write = [&](const char* name, const std::string& throwing, std::uint64_t count) {
     std::ofstream input(fmt::format("{}/{}", folder, name));
@@ -205,15 +206,15 @@ Times run_on_threads(std::vector<GrainLoop>& beds) {
 void compare_threads() {
   const ReducedSettings units = settings_of(WaltonBraun{});
   std::vector<GrainLoop> two(2, settled(box, units, n_spheres, 20'000));
-  std::vector<GrainLoop> one(1, two[0]);
+  std::vector<GrainLoop> single(1, two[0]);
   std::vector<double> processor, elapsed;
   for (int turn = 0; turn < thread_turns; ++turn) {
-    const Times alone = run_on_threads(one), together = run_on_threads(two);
-    processor.push_back(alone.processor / together.processor);
-    elapsed.push_back(alone.elapsed / together.elapsed);
+    const Times alone = run_on_threads(single), concurrent = run_on_threads(two);
+    processor.push_back(alone.processor / concurrent.processor);
+    elapsed.push_back(alone.elapsed / concurrent.elapsed);
   }
-  const auto print = [](const char* of, const std::vector<double>& found) {
-    fmt::print("two beds on two threads, efficiency by {} time: {:.3f} ({:.3f} to {:.3f})\n", of,
+  const auto print = [](const char* label, const std::vector<double>& found) {
+    fmt::print("two beds on two threads, efficiency by {} time: {:.3f} ({:.3f} to {:.3f})\n", label,
                median(found), *std::ranges::min_element(found), *std::ranges::max_element(found));
   };
   print("processor", processor);
@@ -257,14 +258,14 @@ void compare_mixtures() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string what = argc > 1 ? argv[1] : "";
+  const std::string selection = argc > 1 ? argv[1] : "";
   fmt::print("instruction set {}, million sphere steps per second of processor time\n",
              name(best_instruction_set()));
-  if (what == "threads") {
+  if (selection == "threads") {
     compare_threads();
-  } else if (what == "sizes") {
+  } else if (selection == "sizes") {
     compare_sizes();
-  } else if (what == "mixtures") {
+  } else if (selection == "mixtures") {
     compare_mixtures();
   } else {
     compare_laws(argc > 1 ? argv[1] : nullptr);

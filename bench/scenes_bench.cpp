@@ -30,8 +30,8 @@ struct ForgetfulSink final : Sink {
 
 // The first sweep point of a scene, or nothing where the file is no complete scene.
 std::optional<Plan> first_point(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::ifstream stream(file);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
   const ParsedScene parsed = parse_scene(text);
   if (!parsed.scene) return std::nullopt;
   try {

@@ -62,10 +62,10 @@ double push_apart(const FullyPeriodicBox& box, std::vector<Vec3>& centres, doubl
   for (std::uint32_t i = 0; i < n; ++i) {
     grid.for_each_near(centres[i], [&](std::uint32_t j) {
       if (j <= i) return;
-      const Vec3 apart = separation(box, centres[i], centres[j]);
-      const double distance = std::sqrt(norm_squared(apart));
+      const Vec3 offset = separation(box, centres[i], centres[j]);
+      const double distance = std::sqrt(norm_squared(offset));
       if (distance >= diameter) return;
-      const Vec3 push = (0.5 * (diameter - distance) / distance) * apart;
+      const Vec3 push = (0.5 * (diameter - distance) / distance) * offset;
       deepest = std::max(deepest, diameter - distance);
       centres[i] = wrapped(box, centres[i] + push);
       centres[j] = wrapped(box, centres[j] - push);
@@ -80,10 +80,10 @@ Packing squeezed(std::uint32_t n_spheres, double fraction) {
   constexpr double margin = 1e-3;  // diameters, so that pushing ends
   constexpr int most_rounds = 20'000;
   Packing packing = grown(n_spheres, 0.55);
-  const double before = width_x(packing.container);
+  const double width_before = width_x(packing.container);
   const FullyPeriodicBox box = cube(n_spheres, fraction);
   packing.container = box;
-  for (Vec3& r : packing.centres) r = wrapped(box, (box.width_x / before) * r);
+  for (Vec3& r : packing.centres) r = wrapped(box, (box.width_x / width_before) * r);
   for (int round = 0; round < most_rounds; ++round) {
     if (push_apart(box, packing.centres, 1 + margin) < margin) return packing;
   }
@@ -124,7 +124,7 @@ Case made_whole(StandardState state, std::uint32_t n_spheres) {
 void shuffle(std::vector<Vec3>& centres) {
   RandomStream random(stream(Purpose::start));
   for (std::size_t k = centres.size(); k > 1; --k) {
-    std::swap(centres[k - 1], centres[random.below(k)]);
+    std::swap(centres[k - 1], centres[random.integer_below(k)]);
   }
 }
 

@@ -20,9 +20,9 @@ const Packing& bed() {
 void part(benchmark::State& run, const StructureSettings& settings) {
   const Packing& packing = bed();
   for (auto _ : run) {
-    for (const Measurement& one :
+    for (const Measurement& measurement :
          measure(packing, settings, stream_key(20010222, 0, 0, Purpose::resampling)))
-      if (!one.refused.empty()) run.SkipWithError(one.refused.c_str());
+      if (!measurement.refused.empty()) run.SkipWithError(measurement.refused.c_str());
   }
 }
 

@@ -40,17 +40,17 @@ Yardstick yardstick_for(StandardState state, const Case& made) {
 }
 
 Rate measure_yardstick(Yardstick& yardstick, std::uint64_t trials) {
-  const Yardstick before = yardstick;
+  const Yardstick yardstick_before = yardstick;
   const double began = thread_seconds();
   yardstick.run(trials);
   Rate rate{.trials = trials, .seconds = thread_seconds() - began};
   const auto n = static_cast<double>(trials);
-  rate.acceptance = static_cast<double>(yardstick.accepted - before.accepted) / n;
+  rate.acceptance = static_cast<double>(yardstick.accepted - yardstick_before.accepted) / n;
   rate.distance_tests_per_trial =
-      static_cast<double>(yardstick.distance_tests - before.distance_tests) / n;
+      static_cast<double>(yardstick.distance_tests - yardstick_before.distance_tests) / n;
   rate.list_renewals_per_sweep =
-      static_cast<double>(yardstick.list_rebuilds - before.list_rebuilds) * yardstick.n_spheres() *
-      yardstick.n_spheres() / n;
+      static_cast<double>(yardstick.list_rebuilds - yardstick_before.list_rebuilds) *
+      yardstick.n_spheres() * yardstick.n_spheres() / n;
   return rate;
 }
 
@@ -136,10 +136,10 @@ void report_growth(int repetitions) {
   std::vector<double> ratio, large;
   double bytes = 0;
   for (int k = 0; k < repetitions; ++k) {
-    const Rate many = measure_rate(*loops[0], trials), few = measure_rate(*loops[1], trials);
-    large.push_back(many.trials_per_second());
+    const Rate large_rate = measure_rate(*loops[0], trials), few = measure_rate(*loops[1], trials);
+    large.push_back(large_rate.trials_per_second());
     ratio.push_back(large.back() / few.trials_per_second());
-    bytes = many.bytes_per_sphere;
+    bytes = large_rate.bytes_per_sphere;
   }
   fmt::print("1048576 spheres: {:.1f} million trials/s, {:.2f} of the rate at 4096, {}\n",
              median(large) / 1e6, median(ratio), verdict(median(ratio), 0.5));

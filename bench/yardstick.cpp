@@ -49,7 +49,7 @@ Yardstick::Yardstick(const std::vector<std::array<double, 3>>& centres, double w
       lists_(lists),
       max_step_(max_step),
       theta_(theta_inverse()) {
-  for (const auto& c : centres) at_.push_back({c[0], c[1], c[2], 0});
+  for (const auto& c : centres) position_.push_back({c[0], c[1], c[2], 0});
   if (height > 0) {
     skin_ = 1.0;
   } else {
@@ -80,9 +80,9 @@ double Yardstick::wrapped(double x, int axis) const {
   return x < 0 ? x + w : (x >= w ? x - w : x);
 }
 
-void Yardstick::next(std::array<std::uint64_t, lanes>& out) {
+void Yardstick::next(std::array<std::uint64_t, lanes>& numbers) {
   for (int l = 0; l < lanes; ++l) {
-    out[l] = state_[0][l] + state_[3][l];
+    numbers[l] = state_[0][l] + state_[3][l];
     const std::uint64_t t = state_[1][l] << 17;
     state_[2][l] ^= state_[0][l];
     state_[3][l] ^= state_[1][l];
@@ -96,7 +96,7 @@ void Yardstick::next(std::array<std::uint64_t, lanes>& out) {
 // Two 64-bit numbers per trial, each cut into two of 32 bits.
 void Yardstick::propose() {
   constexpr double pi = 3.14159265358979323846;
-  const auto n = static_cast<std::uint64_t>(at_.size());
+  const auto n = static_cast<std::uint64_t>(position_.size());
   std::array<std::uint64_t, lanes> a, b;
   for (int k = 0; k < batch; k += lanes) {
     next(a);
@@ -136,19 +136,19 @@ void Yardstick::propose() {
 
 void Yardstick::sort_into_cells(double reach) {
   double top = 1;
-  for (const Point& p : at_) top = std::max(top, p.z);
+  for (const Point& p : position_) top = std::max(top, p.z);
   for (int axis = 0; axis < 3; ++axis) {
     const double extent = width_[axis] > 0 ? width_[axis] : top + 1e-9;
     cells_[axis] = std::max(1, static_cast<int>(extent / reach));
     per_length_[axis] = cells_[axis] / extent;
   }
-  const auto n = static_cast<std::uint32_t>(at_.size());
+  const auto n = static_cast<std::uint32_t>(position_.size());
   cell_first_.assign(cells_[0] * cells_[1] * cells_[2] + 1, 0);
   cell_of_.resize(n);
   for (std::uint32_t i = 0; i < n; ++i) {
-    const int x = std::min(cells_[0] - 1, static_cast<int>(at_[i].x * per_length_[0]));
-    const int y = std::min(cells_[1] - 1, static_cast<int>(at_[i].y * per_length_[1]));
-    const int z = std::min(cells_[2] - 1, static_cast<int>(at_[i].z * per_length_[2]));
+    const int x = std::min(cells_[0] - 1, static_cast<int>(position_[i].x * per_length_[0]));
+    const int y = std::min(cells_[1] - 1, static_cast<int>(position_[i].y * per_length_[1]));
+    const int z = std::min(cells_[2] - 1, static_cast<int>(position_[i].z * per_length_[2]));
     cell_of_[i] = {x, y, z};
     ++cell_first_[(z * cells_[1] + y) * cells_[0] + x + 1];
   }
@@ -163,7 +163,7 @@ void Yardstick::sort_into_cells(double reach) {
 
 // The spheres within `reach` of sphere i, in the order of their cells.
 void Yardstick::append_neighbours(std::uint32_t i, double reach) {
-  const Point p = at_[i];
+  const Point p = position_[i];
   for (int dz = -1; dz <= 1; ++dz) {
     int z = cell_of_[i][2] + dz;
     if (z < 0 || z >= cells_[2]) {
@@ -179,8 +179,8 @@ void Yardstick::append_neighbours(std::uint32_t i, double reach) {
         const int cell = (z * cells_[1] + y) * cells_[0] + x;
         for (std::uint32_t k = cell_first_[cell]; k < cell_first_[cell + 1]; ++k) {
           const std::uint32_t j = in_cells_[k];
-          const double ax = image(p.x - at_[j].x, 0), ay = image(p.y - at_[j].y, 1);
-          const double az = image(p.z - at_[j].z, 2);
+          const double ax = image(p.x - position_[j].x, 0), ay = image(p.y - position_[j].y, 1);
+          const double az = image(p.z - position_[j].z, 2);
           if (j != i && ax * ax + ay * ay + az * az < reach * reach) neighbours_.push_back(j);
         }
       }
@@ -189,7 +189,7 @@ void Yardstick::append_neighbours(std::uint32_t i, double reach) {
 }
 
 void Yardstick::rebuild() {
-  const auto n = static_cast<std::uint32_t>(at_.size());
+  const auto n = static_cast<std::uint32_t>(position_.size());
   const double reach = 1 + skin_;
   sort_into_cells(reach);
   first_.assign(1, 0);
@@ -199,7 +199,7 @@ void Yardstick::rebuild() {
     lists_ == YardstickLists::sorted ? sort_neighbours(i) : put_near_first(i);
     first_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
   }
-  origin_ = at_;
+  origin_ = position_;
   ++list_rebuilds;
 }
 
@@ -207,8 +207,9 @@ void Yardstick::rebuild() {
 void Yardstick::put_near_first(std::uint32_t i) {
   constexpr double near = 1.1;
   std::partition(neighbours_.begin() + first_.back(), neighbours_.end(), [&](std::uint32_t j) {
-    const double x = image(at_[i].x - at_[j].x, 0), y = image(at_[i].y - at_[j].y, 1);
-    const double z = image(at_[i].z - at_[j].z, 2);
+    const double x = image(position_[i].x - position_[j].x, 0),
+                 y = image(position_[i].y - position_[j].y, 1);
+    const double z = image(position_[i].z - position_[j].z, 2);
     return x * x + y * y + z * z < near * near;
   });
 }
@@ -216,8 +217,9 @@ void Yardstick::put_near_first(std::uint32_t i) {
 // The nearest first, under gravity those below before those above.
 void Yardstick::sort_neighbours(std::uint32_t i) {
   const auto distance = [&](std::uint32_t j) {
-    const double x = image(at_[i].x - at_[j].x, 0), y = image(at_[i].y - at_[j].y, 1);
-    const double z = image(at_[i].z - at_[j].z, 2);
+    const double x = image(position_[i].x - position_[j].x, 0),
+                 y = image(position_[i].y - position_[j].y, 1);
+    const double z = image(position_[i].z - position_[j].z, 2);
     return x * x + y * y + z * z + (width_[2] == 0 && z < 0 ? 10 : 0);
   };
   std::sort(neighbours_.begin() + first_.back(), neighbours_.end(),
@@ -226,7 +228,7 @@ void Yardstick::sort_neighbours(std::uint32_t i) {
 
 bool Yardstick::blocked(std::uint32_t i, const Point& q) {
   for (std::uint32_t k = first_[i]; k < first_[i + 1]; ++k) {
-    const Point& p = at_[neighbours_[k]];
+    const Point& p = position_[neighbours_[k]];
     ++distance_tests;
     const double x = image(q.x - p.x, 0), y = image(q.y - p.y, 1), z = image(q.z - p.z, 2);
     if (x * x + y * y + z * z < 1) return true;
@@ -239,14 +241,14 @@ void Yardstick::run(std::uint64_t n_trials) {
     if (used_ == batch) propose();
     const int t = used_++;
     const std::uint32_t soon = sphere_[std::min(batch - 1, t + 12)];
-    __builtin_prefetch(&at_[soon]);
+    __builtin_prefetch(&position_[soon]);
     __builtin_prefetch(&first_[soon]);
     __builtin_prefetch(&neighbours_[first_[sphere_[std::min(batch - 1, t + 6)]]]);
     ++trials;
     if (move_ == YardstickMove::metropolis_cold && dz_[t] > 0) continue;
     const std::uint32_t i = sphere_[t];
-    const Point q = {wrapped(at_[i].x + dx_[t], 0), wrapped(at_[i].y + dy_[t], 1),
-                     wrapped(at_[i].z + dz_[t], 2), 0};
+    const Point q = {wrapped(position_[i].x + dx_[t], 0), wrapped(position_[i].y + dy_[t], 1),
+                     wrapped(position_[i].z + dz_[t], 2), 0};
     if (width_[2] == 0 && q.z < 0.5) continue;
     if (blocked(i, q)) continue;
     const double x = image(q.x - origin_[i].x, 0), y = image(q.y - origin_[i].y, 1);
@@ -255,7 +257,7 @@ void Yardstick::run(std::uint64_t n_trials) {
       rebuild();
       if (blocked(i, q)) continue;
     }
-    at_[i] = q;
+    position_[i] = q;
     ++accepted;
   }
 }

@@ -30,7 +30,7 @@ class Yardstick {
             double height, YardstickMove move, double max_step, YardstickLists lists);
 
   void run(std::uint64_t n_trials);
-  double n_spheres() const { return static_cast<double>(at_.size()); }
+  double n_spheres() const { return static_cast<double>(position_.size()); }
 
   std::uint64_t trials = 0, accepted = 0, distance_tests = 0, list_rebuilds = 0;
 
@@ -42,7 +42,7 @@ class Yardstick {
 
   double image(double d, int axis) const;
   double wrapped(double x, int axis) const;
-  void next(std::array<std::uint64_t, lanes>& out);
+  void next(std::array<std::uint64_t, lanes>& numbers);
   void propose();
   void rebuild();
   void sort_into_cells(double reach);
@@ -51,7 +51,7 @@ class Yardstick {
   void put_near_first(std::uint32_t i);
   bool blocked(std::uint32_t i, const Point& q);
 
-  std::vector<Point> at_, origin_;
+  std::vector<Point> position_, origin_;
   std::array<double, 3> width_;  // 0: not periodic
   YardstickMove move_;
   YardstickLists lists_;

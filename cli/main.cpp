@@ -27,9 +27,9 @@ int parse_and_run(int argc, char** argv) {
   return outcome.refused ? exit_bad_input : code;
 }
 
-void say(const std::string& what) {
+void say(const std::string& message) {
   constexpr std::size_t longest_line = 2000;
-  print_to_standard_error(fmt::format("jostle: {}\n", printable(what, longest_line)));
+  print_to_standard_error(fmt::format("jostle: {}\n", printable(message, longest_line)));
 }
 
 /// Every error ends here, with a message on stderr.

@@ -46,7 +46,7 @@ class Check {
   /// For a ramp the tap of its greatest strength.
   static Tap strongest_tap(const ProtocolLine& line) {
     Tap tap = line.tap;
-    if (line.ramp) strength(tap) = std::max(line.ramp->from, line.ramp->to);
+    if (line.ramp) strength(tap) = std::max(line.ramp->start, line.ramp->end);
     return tap;
   }
 
@@ -88,15 +88,15 @@ class Check {
     std::map<std::string, std::string> taken;
     for (const Column& column : columns(engine_of(scene_)))
       taken[column.name] = "a column of every series";
-    for (const std::string beside : names_beside_series)
-      taken[beside] = "what is stored beside the observables";
+    for (const std::string reserved : names_beside_series)
+      taken[reserved] = "what is stored beside the observables";
     for (std::size_t i = 0; i < scene_.observables.size(); ++i) {
       const std::string name = label(scene_.observables[i]).name;
-      const std::string here = fmt::format("/observe/{}", i);
-      if (!all_sound({here})) continue;
-      const auto [other, is_new] = taken.emplace(name, here);
+      const std::string pointer = fmt::format("/observe/{}", i);
+      if (!all_sound({pointer})) continue;
+      const auto [entry, is_new] = taken.emplace(name, pointer);
       if (is_new) continue;
-      note(here, fmt::format("the name \"{}\" is taken by {}", name, other->second));
+      note(pointer, fmt::format("the name \"{}\" is taken by {}", name, entry->second));
     }
   }
 

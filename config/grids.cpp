@@ -40,12 +40,12 @@ Tap with_strength(Tap tap, double strength) {
 std::vector<std::uint64_t> logarithmic(const LogarithmicTaps& grid) {
   const double root = root_of_ten(grid.per_decade);
   std::vector<std::uint64_t> taps = grid.also;
-  double decade = static_cast<double>(grid.from);
-  while (decade <= static_cast<double>(grid.to)) {
+  double decade = static_cast<double>(grid.first);
+  while (decade <= static_cast<double>(grid.last)) {
     double value = decade;
     for (std::uint32_t i = 0; i < grid.per_decade; ++i, value *= root) {
       const double tap = std::floor(value + 0.5);
-      if (tap <= static_cast<double>(grid.to)) taps.push_back(static_cast<std::uint64_t>(tap));
+      if (tap <= static_cast<double>(grid.last)) taps.push_back(static_cast<std::uint64_t>(tap));
     }
     decade *= 10;
   }
@@ -55,7 +55,7 @@ std::vector<std::uint64_t> logarithmic(const LogarithmicTaps& grid) {
 }  // namespace
 
 std::optional<std::uint64_t> whole_steps(const Ramp& ramp) {
-  const double steps = std::abs(ramp.to - ramp.from) / ramp.step;
+  const double steps = std::abs(ramp.end - ramp.start) / ramp.step;
   const double whole = std::floor(steps + 0.5);
   if (!(std::abs(steps - whole) <= 1e-6) || !(whole < 1e15)) return std::nullopt;
   return static_cast<std::uint64_t>(whole);
@@ -66,11 +66,11 @@ std::vector<double> strengths(const Ramp& ramp) {
   std::vector<double> values;
   for (std::uint64_t k = 0; k <= steps; ++k) {
     const double weight = static_cast<double>(k), rest = static_cast<double>(steps - k);
-    double value = ramp.from;
+    double value = ramp.start;
     if (k == steps && steps > 0) {
-      value = ramp.to;
+      value = ramp.end;
     } else if (k > 0) {
-      value = rounded_to_15_digits((ramp.from * rest + ramp.to * weight) / (rest + weight));
+      value = rounded_to_15_digits((ramp.start * rest + ramp.end * weight) / (rest + weight));
     }
     values.push_back(ramp.scale == RampScale::square_root ? value * value : value);
   }

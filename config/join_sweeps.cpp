@@ -39,7 +39,7 @@ Json shared_part(const Scene& scene) {
 std::string differences(const Json& a, const Json& b) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : a.members()) {
-    if (const Json* other = b.find(key); other == nullptr || *other != value)
+    if (const Json* counterpart = b.find(key); counterpart == nullptr || *counterpart != value)
       keys.push_back("/" + key);
   }
   for (const auto& [key, value] : b.members()) {
@@ -48,29 +48,30 @@ std::string differences(const Json& a, const Json& b) {
   return joined(keys, ", ");
 }
 
-/// Adds the rows of `more` that `axis` does not have; columns are those of `axis`.
-void add_rows(SweepAxis& axis, const SweepAxis& more) {
-  const auto row = [](const SweepAxis& of, std::size_t i) {
+/// Adds the rows of `added` that `axis` does not have; columns are those of `axis`.
+void add_rows(SweepAxis& axis, const SweepAxis& added) {
+  const auto row = [](const SweepAxis& axis_of_row, std::size_t i) {
     std::string text;
-    for (const auto& [pointer, values] : of.columns) text += canonical_text(values[i]) + "\n";
+    for (const auto& [pointer, values] : axis_of_row.columns)
+      text += canonical_text(values[i]) + "\n";
     return text;
   };
   std::set<std::string> known;
   for (std::size_t i = 0; i < axis.size(); ++i) known.insert(row(axis, i));
-  for (std::size_t i = 0; i < more.size(); ++i) {
-    if (!known.insert(row(more, i)).second) continue;
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    if (!known.insert(row(added, i)).second) continue;
     for (std::size_t c = 0; c < axis.columns.size(); ++c) {
-      axis.columns[c].second.push_back(more.columns[c].second[i]);
+      axis.columns[c].second.push_back(added.columns[c].second[i]);
     }
   }
 }
 
 /// The labels that both scenes give to the points of the joined one, the first scene's before the
 /// other's; none where a point has no label, or two points have the same.
-std::vector<std::string> joined_labels(const Scene& first, const Scene& other,
+std::vector<std::string> joined_labels(const Scene& first, const Scene& second,
                                        const Scene& joined) {
   std::map<std::uint64_t, std::string> known;
-  for (const Scene* const scene : {&first, &other}) {
+  for (const Scene* const scene : {&first, &second}) {
     const std::vector<SweepPoint> points = sweep_points(scene->sweep);
     for (std::size_t i = 0; i < scene->point_labels.size(); ++i)
       known.try_emplace(point_id(points[i]), scene->point_labels[i]);
@@ -88,12 +89,12 @@ std::vector<std::string> joined_labels(const Scene& first, const Scene& other,
 
 }  // namespace
 
-ParsedScene join_sweeps(const ParsedScene& first, const ParsedScene& other) {
+ParsedScene join_sweeps(const ParsedScene& first, const ParsedScene& second) {
   if (!first.scene) return first;
-  if (!other.scene) return other;
+  if (!second.scene) return second;
   ParsedScene refused;
-  const std::string differ = differences(shared_part(*first.scene), shared_part(*other.scene));
-  if (first.scene->sweep.empty() || !sweep_the_same(first.scene->sweep, other.scene->sweep)) {
+  const std::string differ = differences(shared_part(*first.scene), shared_part(*second.scene));
+  if (first.scene->sweep.empty() || !sweep_the_same(first.scene->sweep, second.scene->sweep)) {
     refused.faults = {{"/sweep", "the same must be swept, in the same order"}};
   } else if (!differ.empty()) {
     refused.faults = {{"", "differs in " + differ + ": only the values of a sweep may"}};
@@ -101,9 +102,9 @@ ParsedScene join_sweeps(const ParsedScene& first, const ParsedScene& other) {
   if (!refused.faults.empty()) return refused;
   Scene joined = *first.scene;
   for (std::size_t i = 0; i < joined.sweep.size(); ++i) {
-    add_rows(joined.sweep[i], other.scene->sweep[i]);
+    add_rows(joined.sweep[i], second.scene->sweep[i]);
   }
-  joined.point_labels = joined_labels(*first.scene, *other.scene, joined);
+  joined.point_labels = joined_labels(*first.scene, *second.scene, joined);
   return checked_scene(resolved(joined));
 }
 

@@ -94,44 +94,44 @@ class GrainLadder : LadderMaker {
  private:
   void rests(const QuietRest& rest) {
     for (const double factor : {100.0, 10.0}) {
-      QuietRest other = rest;
-      other.kinetic_energy = rounded(rest.kinetic_energy * factor);
-      if (other.kinetic_energy > 1) continue;
-      ended_by(other, finite_text("quiet below {:.3g} m g d", other.kinetic_energy));
+      QuietRest rung = rest;
+      rung.kinetic_energy = rounded(rest.kinetic_energy * factor);
+      if (rung.kinetic_energy > 1) continue;
+      ended_by(rung, finite_text("quiet below {:.3g} m g d", rung.kinetic_energy));
     }
     for (const double factor : {5.0, 25.0}) {
-      QuietRest other = rest;
-      other.seconds = rounded(rest.seconds * factor);
-      ended_by(other, finite_text("quiet for {:.3g} s", other.seconds));
+      QuietRest rung = rest;
+      rung.seconds = rounded(rest.seconds * factor);
+      ended_by(rung, finite_text("quiet for {:.3g} s", rung.seconds));
     }
   }
 
   void rests(const TimedRest& rest) {
     for (const double factor : {0.25, 0.5, 2.0, 4.0}) {
-      const TimedRest other{rounded(rest.seconds * factor)};
-      ended_by(other, finite_text("{:.3g} s after the floor", other.seconds));
+      const TimedRest rung{rounded(rest.seconds * factor)};
+      ended_by(rung, finite_text("{:.3g} s after the floor", rung.seconds));
     }
   }
 
   template <class AnyRest>
   void ended_by(const AnyRest& rest, std::string name) {
     if (rest.seconds > most_seconds) return;
-    DiscreteElement other = grains_;
-    other.rest = rest;
+    DiscreteElement rung = grains_;
+    rung.rest = rest;
     // The cap must leave as much time before the rest as the scene's does.
-    const double own = std::visit([](const auto& one) { return one.seconds; }, grains_.rest);
-    const double more = std::max(0.0, rest.seconds - own);
-    other.most_seconds = rounded(std::min(grains_.most_seconds + more, most_seconds));
-    add(PilotSetting::Part::stop, std::move(name), other);
+    const double own = std::visit([](const auto& choice) { return choice.seconds; }, grains_.rest);
+    const double extra_time = std::max(0.0, rest.seconds - own);
+    rung.most_seconds = rounded(std::min(grains_.most_seconds + extra_time, most_seconds));
+    add(PilotSetting::Part::stop, std::move(name), rung);
   }
 
   void time_steps() {
     for (const double factor : {0.5, 2.0, 4.0}) {
-      DiscreteElement other = grains_;
+      DiscreteElement rung = grains_;
       const double steps = rounded(steps_of_contact(grains_) * factor);
       if (steps < 40 || steps > 1e6) continue;
-      other.steps_per_contact = steps;
-      add(PilotSetting::Part::step, finite_text("{:g} steps per contact", steps), other);
+      rung.steps_per_contact = steps;
+      add(PilotSetting::Part::step, finite_text("{:g} steps per contact", steps), rung);
     }
   }
 
@@ -146,13 +146,13 @@ class GrainLadder : LadderMaker {
             },
             law);
       };
-      DiscreteElement other = grains_;
-      scale(other.spheres);
-      if (other.floor) scale(*other.floor);
-      if (other.sides) scale(*other.sides);
+      DiscreteElement rung = grains_;
+      scale(rung.spheres);
+      if (rung.floor) scale(*rung.floor);
+      if (rung.sides) scale(*rung.sides);
       if (!allowed) continue;
       add(PilotSetting::Part::stiffness, factor < 1 ? "ten times softer" : "ten times stiffer",
-          other);
+          rung);
     }
   }
 
@@ -175,18 +175,18 @@ class RelaxationLadder : LadderMaker {
  private:
   void stops(const MeanHeightStop& rule) {
     for (const double factor : {100.0, 10.0, 0.1, 0.01}) {
-      MeanHeightStop other = rule;
-      other.eta = rounded(rule.eta * factor);
-      if (other.eta < 1) stop(other, factor, finite_text("eta = {:.3g}", other.eta));
+      MeanHeightStop rung = rule;
+      rung.eta = rounded(rule.eta * factor);
+      if (rung.eta < 1) stop(rung, factor, finite_text("eta = {:.3g}", rung.eta));
     }
     intervals(rule);
   }
 
   void stops(const HeightChangeStop& rule) {
     for (const double factor : {100.0, 10.0, 0.1, 0.01}) {
-      HeightChangeStop other = rule;
-      other.change = rounded(rule.change * factor);
-      if (other.change <= 1) stop(other, factor, finite_text("change = {:.3g} d", other.change));
+      HeightChangeStop rung = rule;
+      rung.change = rounded(rule.change * factor);
+      if (rung.change <= 1) stop(rung, factor, finite_text("change = {:.3g} d", rung.change));
     }
     intervals(rule);
   }
@@ -195,19 +195,19 @@ class RelaxationLadder : LadderMaker {
   void intervals(const OfMeanHeight& rule) {
     for (const std::uint64_t interval : {rule.every_sweeps / 10, rule.every_sweeps * 10}) {
       if (interval < 1) continue;
-      OfMeanHeight other = rule;
-      other.every_sweeps = interval;
+      OfMeanHeight rung = rule;
+      rung.every_sweeps = interval;
       Relaxation relax = scene_.relax;
-      relax.stop.rule = other;
+      relax.stop.rule = rung;
       add(PilotSetting::Part::interval, fmt::format("test every {} sweeps", interval), relax);
     }
   }
 
   void stops(const BulkFractionStop& rule) {
     for (const double factor : {10.0, 0.1}) {
-      BulkFractionStop other = rule;
-      other.change = rounded(rule.change * factor);
-      stop(other, factor, finite_text("change = {:.3g}", other.change));
+      BulkFractionStop rung = rule;
+      rung.change = rounded(rule.change * factor);
+      stop(rung, factor, finite_text("change = {:.3g}", rung.change));
     }
     for (const double eta : {1e-5, 1e-6}) {
       stop(MeanHeightStop{.eta = eta, .every_sweeps = complete_interval}, 0.01,
@@ -217,8 +217,8 @@ class RelaxationLadder : LadderMaker {
 
   void stops(const SweepsStop& rule) {
     for (const double factor : {100.0, 10.0, 0.1, 0.01}) {
-      const SweepsStop other{raised(rule.sweeps, 1 / factor)};
-      if (other.sweeps > 0) stop(other, factor, fmt::format("{} sweeps", other.sweeps));
+      const SweepsStop rung{raised(rule.sweeps, 1 / factor)};
+      if (rung.sweeps > 0) stop(rung, factor, fmt::format("{} sweeps", rung.sweeps));
     }
   }
 
@@ -232,27 +232,27 @@ class RelaxationLadder : LadderMaker {
   template <class AnyMove>
   void largest_steps(const AnyMove& move, const char* name) {
     for (const double factor : {0.5, 2.0}) {
-      AnyMove other = move;
-      other.max_step = rounded(move.max_step * factor);
+      AnyMove rung = move;
+      rung.max_step = rounded(move.max_step * factor);
       const double longest = scene_.kinds.empty()
                                  ? least_periodic_width
                                  : std::min(least_periodic_width, 2 * range_of(scene_.kinds).least);
-      if (other.max_step > longest) continue;
+      if (rung.max_step > longest) continue;
       Relaxation relax = scene_.relax;
-      relax.move = other;
-      add(PilotSetting::Part::step, finite_text("{} = {:.3g}", name, other.max_step), relax);
+      relax.move = rung;
+      add(PilotSetting::Part::step, finite_text("{} = {:.3g}", name, rung.max_step), relax);
     }
   }
 
   void steps(const PolarMove& move) {
     largest_steps(move, "d_max");
     for (const double factor : {0.5, 2.0}) {
-      PolarMove other = move;
-      other.theta0 = rounded(move.theta0 * factor);
-      if (other.theta0 < least_theta0 || other.theta0 > most_theta0) continue;
+      PolarMove rung = move;
+      rung.theta0 = rounded(move.theta0 * factor);
+      if (rung.theta0 < least_theta0 || rung.theta0 > most_theta0) continue;
       Relaxation relax = scene_.relax;
-      relax.move = other;
-      add(PilotSetting::Part::step, finite_text("theta_0 = {:.3g}", other.theta0), relax);
+      relax.move = rung;
+      add(PilotSetting::Part::step, finite_text("theta_0 = {:.3g}", rung.theta0), relax);
     }
   }
 
@@ -261,10 +261,10 @@ class RelaxationLadder : LadderMaker {
     const auto adapted = [&](const char* name, std::optional<StepAdaptation> adaptation) {
       const bool skips = scene_.relax.sampler == Sampler::rejection_free;
       if (skips && adaptation && adaptation->base == AcceptanceBase::not_upward) return;
-      MetropolisMove other = move;
-      other.adaptation = adaptation;
+      MetropolisMove rung = move;
+      rung.adaptation = adaptation;
       Relaxation relax = scene_.relax;
-      relax.move = other;
+      relax.move = rung;
       add(PilotSetting::Part::adaptation, name, relax);
     };
     adapted("published delta rule", StepAdaptation{});
@@ -323,59 +323,61 @@ std::vector<OtherWindow> other_windows(const Scene& scene) {
   std::vector<OtherWindow> windows;
   std::vector<std::string> taken;
   for (const Observable& observable : scene.observables) taken.push_back(label(observable).name);
-  const auto add = [&](const BulkFraction& of, const char* ending, const Window& window,
+  const auto add = [&](const BulkFraction& bulk, const char* ending, const Window& window,
                        double taper) {
-    const std::string name = of.name + ending;
+    const std::string name = bulk.name + ending;
     if (name.size() > longest_name || std::ranges::find(taken, name) != taken.end()) return;
     taken.push_back(name);
-    windows.push_back({of.name, {name, window, taper}});
+    windows.push_back({bulk.name, {name, window, taper}});
   };
   for (const Observable& observable : scene.observables) {
-    const auto* of = std::get_if<BulkFraction>(&observable);
-    if (of == nullptr) continue;
+    const auto* bulk = std::get_if<BulkFraction>(&observable);
+    if (bulk == nullptr) continue;
     std::visit(
         [&](auto window) {
           const double quarter = 0.25 * (window.high - window.low);
           window.low = rounded(window.low + quarter);
           window.high = rounded(window.high - quarter);
-          if (window.low < window.high) add(*of, "_narrow", window, of->taper);
+          if (window.low < window.high) add(*bulk, "_narrow", window, bulk->taper);
         },
-        of->window);
-    if (const auto* quantiles = std::get_if<QuantileWindow>(&of->window)) {
-      add(*of, "_wide",
+        bulk->window);
+    if (const auto* quantiles = std::get_if<QuantileWindow>(&bulk->window)) {
+      add(*bulk, "_wide",
           QuantileWindow{rounded(0.5 * quantiles->low), rounded(0.5 * (1 + quantiles->high))},
-          of->taper);
+          bulk->taper);
     }
-    if (of->taper == 0 && can_taper(of->window)) add(*of, "_tapered", of->window, layer_spacing);
+    if (bulk->taper == 0 && can_taper(bulk->window))
+      add(*bulk, "_tapered", bulk->window, layer_spacing);
   }
   return windows;
 }
 
 Scene ladder_scene(const Scene& scene, const std::vector<PilotSetting>& settings,
                    std::uint64_t taps) {
-  Scene out = scene;
-  out.name = scene.name + "-cost";
-  out.streams = Streams::matched;
-  out.realizations = 1;
-  out.until = {};
-  out.fits.clear();
-  out.analyse = {};
-  out.structure = {};
-  out.snapshots = SnapshotChoice{};
-  out.motion.reset();
-  out.protocol.clear();
+  Scene pilot = scene;
+  pilot.name = scene.name + "-cost";
+  pilot.streams = Streams::matched;
+  pilot.realizations = 1;
+  pilot.until = {};
+  pilot.fits.clear();
+  pilot.analyse = {};
+  pilot.structure = {};
+  pilot.snapshots = SnapshotChoice{};
+  pilot.motion.reset();
+  pilot.protocol.clear();
   for (const Stage& stage : stages(scene.protocol)) {
     const std::uint64_t count = std::min(stage.count, taps);
-    if (count > 0) out.protocol.push_back({stage.tap, std::nullopt, count});
+    if (count > 0) pilot.protocol.push_back({stage.tap, std::nullopt, count});
     taps -= count;
   }
   const EngineSettings engine = engine_of(scene);
   const auto* monte_carlo = std::get_if<MonteCarlo>(&engine);
   if (monte_carlo != nullptr) {
     if (const auto* relaxation = relaxation_of_start(*monte_carlo, engine_start(scene.start)))
-      out.relax_start = *relaxation;
+      pilot.relax_start = *relaxation;
   }
-  for (const OtherWindow& other : other_windows(scene)) out.observables.push_back(other.observable);
+  for (const OtherWindow& added : other_windows(scene))
+    pilot.observables.push_back(added.observable);
   SweepAxis axis;
   axis.columns = {{monte_carlo ? "/relax" : "/engine", {}}, {"/spheres", {}}, {"/container", {}}};
   // The values of a point are part of its random streams: without another start, none is named.
@@ -393,8 +395,8 @@ Scene ladder_scene(const Scene& scene, const std::vector<PilotSetting>& settings
     if (starts_differ)
       axis.columns[3].second.push_back(written_value(OneOf<StartChoice>{}, setting.start));
   }
-  out.sweep = {axis};
-  return out;
+  pilot.sweep = {axis};
+  return pilot;
 }
 
 }  // namespace jostle::inline config

@@ -33,13 +33,13 @@ std::vector<PilotSetting> ladder(const Scene& scene);
 /// The settings whose stops are most complete. The last is the reference of all others; setting 0
 /// is the scene's own.
 struct MostComplete {
-  std::size_t before = 0, last = 0;
+  std::size_t second_last = 0, last = 0;
 };
 MostComplete most_complete(const std::vector<PilotSetting>& settings);
 
 /// A bulk fraction of the scene, read through another window.
 struct OtherWindow {
-  std::string of;  // name of the observable
+  std::string name;  // name of the observable
   BulkFraction observable;
 };
 

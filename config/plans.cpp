@@ -96,7 +96,7 @@ std::vector<Plan> make_plans(const Scene& scene, const std::vector<Scene>& point
   std::vector<Plan> plans;
   auto scene_of_point = points.begin();
   for (const SweepPoint& point : sweep_points(scene.sweep)) {
-    const Scene& here = *scene_of_point++;
+    const Scene& point_scene = *scene_of_point++;
     Plan plan;
     plan.label =
         scene.point_labels.empty() ? point_label(point) : scene.point_labels.at(plans.size());
@@ -104,18 +104,19 @@ std::vector<Plan> make_plans(const Scene& scene, const std::vector<Scene>& point
       plan.sweep_values.emplace_back(pointer, canonical_text(value));
     }
     plan.point_id = point_id(point);
-    plan.seed = here.seed;
-    plan.streams = here.streams;
-    plan.container = here.container;
-    plan.n_spheres = here.n_spheres;
-    plan.kinds = here.kinds;
-    plan.pour_order = here.pour_order;
-    plan.start = make_start_of(here);
-    plan.protocol = stages(here.protocol);
-    plan.engine = engine_of(here);
-    plan.observables = here.observables;
-    plan.snapshots = snapshots(here.snapshots, total_taps(here.protocol));
-    if (here.motion) plan.motion = motion_settings(*here.motion, total_taps(plan), n_kinds(plan));
+    plan.seed = point_scene.seed;
+    plan.streams = point_scene.streams;
+    plan.container = point_scene.container;
+    plan.n_spheres = point_scene.n_spheres;
+    plan.kinds = point_scene.kinds;
+    plan.pour_order = point_scene.pour_order;
+    plan.start = make_start_of(point_scene);
+    plan.protocol = stages(point_scene.protocol);
+    plan.engine = engine_of(point_scene);
+    plan.observables = point_scene.observables;
+    plan.snapshots = snapshots(point_scene.snapshots, total_taps(point_scene.protocol));
+    if (point_scene.motion)
+      plan.motion = motion_settings(*point_scene.motion, total_taps(plan), n_kinds(plan));
     plans.push_back(std::move(plan));
   }
   return plans;

@@ -69,38 +69,39 @@ std::optional<std::string> changed_taps(const std::vector<ProtocolLine>& was,
     return fmt::format("had {}, has {}: taps can be added at the end, not removed",
                        counted(n_was, "tap"), n_is);
   }
-  const std::vector<Stage> before = merged(stages(was)), after = merged(stages(is));
+  const std::vector<Stage> stages_before = merged(stages(was)), stages_after = merged(stages(is));
   std::uint64_t tap = 1;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const bool last = i + 1 == before.size();
-    const bool same_tap = i < after.size() && before[i].tap == after[i].tap;
-    const bool long_enough =
-        same_tap && (last ? after[i].count >= before[i].count : after[i].count == before[i].count);
+  for (std::size_t i = 0; i < stages_before.size(); ++i) {
+    const bool last = i + 1 == stages_before.size();
+    const bool same_tap = i < stages_after.size() && stages_before[i].tap == stages_after[i].tap;
+    const bool long_enough = same_tap && (last ? stages_after[i].count >= stages_before[i].count
+                                               : stages_after[i].count == stages_before[i].count);
     if (!long_enough) {
-      const std::uint64_t shared = same_tap ? std::min(before[i].count, after[i].count) : 0;
+      const std::uint64_t shared =
+          same_tap ? std::min(stages_before[i].count, stages_after[i].count) : 0;
       const std::uint64_t changed = tap + shared;
       return fmt::format(
           "tap {} changed from {} to {}: taps can only be added after the last one, {}", changed,
           tap_text(was, changed), tap_text(is, changed), n_was);
     }
-    tap += before[i].count;
+    tap += stages_before[i].count;
   }
   return std::nullopt;
 }
 
-/// Taps may be chosen beyond those of the run. `what`: "snapshot of tap".
-std::optional<std::string> changed_choice(const char* what, std::uint64_t last,
-                                          const std::vector<std::uint64_t>& before,
-                                          const std::vector<std::uint64_t>& after) {
-  for (const std::uint64_t tap : before) {
-    if (!std::binary_search(after.begin(), after.end(), tap)) {
-      return fmt::format("the {} {} was removed", what, tap);
+/// Taps may be chosen beyond those of the run. `key`: "snapshot of tap".
+std::optional<std::string> changed_choice(const char* key, std::uint64_t last,
+                                          const std::vector<std::uint64_t>& taps_before,
+                                          const std::vector<std::uint64_t>& taps_after) {
+  for (const std::uint64_t tap : taps_before) {
+    if (!std::binary_search(taps_after.begin(), taps_after.end(), tap)) {
+      return fmt::format("the {} {} was removed", key, tap);
     }
   }
-  for (const std::uint64_t tap : after) {
+  for (const std::uint64_t tap : taps_after) {
     if (tap > last) break;
-    if (!std::binary_search(before.begin(), before.end(), tap)) {
-      return fmt::format("a {} {} was added: only those after the last tap, {}, can be", what, tap,
+    if (!std::binary_search(taps_before.begin(), taps_before.end(), tap)) {
+      return fmt::format("a {} {} was added: only those after the last tap, {}, can be", key, tap,
                          last);
     }
   }
@@ -117,10 +118,12 @@ std::optional<std::string> changed_snapshots(const Scene& was, const Scene& is) 
 std::optional<std::string> changed_motion(const Scene& was, const Scene& is) {
   if (!was.motion || !is.motion) return std::nullopt;
   const std::uint64_t last = total_taps(was.protocol);
-  const MotionSettings before = motion_settings(*was.motion, last),
-                       after = motion_settings(*is.motion, total_taps(is.protocol));
-  auto changed = changed_choice("motion origin at tap", last, before.origins, after.origins);
-  return changed ? changed : changed_choice("motion lag of", last, before.lags, after.lags);
+  const MotionSettings settings_before = motion_settings(*was.motion, last),
+                       settings_after = motion_settings(*is.motion, total_taps(is.protocol));
+  auto changed =
+      changed_choice("motion origin at tap", last, settings_before.origins, settings_after.origins);
+  return changed ? changed
+                 : changed_choice("motion lag of", last, settings_before.lags, settings_after.lags);
 }
 
 /// Values may be added to a sweep: notes the points that are gone.
@@ -147,15 +150,15 @@ void compare_points(const ParsedScene& was, const Scene& is, const std::vector<S
   bool same_taps = true, same_snapshots = true, same_motion = true;
   scene = was.points.begin();
   for (const SweepPoint& point : sweep_points(was.scene->sweep)) {
-    const Scene &before = *scene++, &after = *found.at(point_id(point));
-    const std::string where =
+    const Scene &old_scene = *scene++, &new_scene = *found.at(point_id(point));
+    const std::string place_text =
         point.values.empty() ? "" : fmt::format(" (at the sweep point {})", point_label(point));
-    const auto taps = changed_taps(before.protocol, after.protocol);
-    const auto snapshots = changed_snapshots(before, after);
-    if (taps && same_taps) faults.push_back({"/protocol", *taps + where});
-    if (snapshots && same_snapshots) faults.push_back({"/snapshots/taps", *snapshots + where});
-    const auto motion = changed_motion(before, after);
-    if (motion && same_motion && !taps) faults.push_back({"/motion", *motion + where});
+    const auto taps = changed_taps(old_scene.protocol, new_scene.protocol);
+    const auto snapshots = changed_snapshots(old_scene, new_scene);
+    if (taps && same_taps) faults.push_back({"/protocol", *taps + place_text});
+    if (snapshots && same_snapshots) faults.push_back({"/snapshots/taps", *snapshots + place_text});
+    const auto motion = changed_motion(old_scene, new_scene);
+    if (motion && same_motion && !taps) faults.push_back({"/motion", *motion + place_text});
     same_motion = same_motion && !motion;
     same_taps = same_taps && !taps;
     same_snapshots = same_snapshots && !snapshots;
@@ -177,18 +180,18 @@ std::vector<Fault> resume_faults(const ParsedScene& was, const Scene& scene,
         {"/realizations", fmt::format("were {}, are {}: realizations can be added, not removed",
                                       was.scene->realizations, scene.realizations)});
   }
-  Json before = resolved(*was.scene), after = resolved(scene);
-  for (Json* one : {&before, &after}) {
+  Json scene_before = resolved(*was.scene), scene_after = resolved(scene);
+  for (Json* scene_json : {&scene_before, &scene_after}) {
     for (const char* free : {"name", "description", "realizations", "protocol", "sweep",
                              "point_labels", "until", "fits", "analyse", "structure"}) {
-      one->erase(free);
+      scene_json->erase(free);
     }
-    (*one)["snapshots"].erase("taps");
-    (*one)["snapshots"].erase("every");
-    if (!one->contains("motion")) continue;
-    for (const char* grid : {"origins", "lags"}) (*one)["motion"].erase(grid);
+    (*scene_json)["snapshots"].erase("taps");
+    (*scene_json)["snapshots"].erase("every");
+    if (!scene_json->contains("motion")) continue;
+    for (const char* grid : {"origins", "lags"}) (*scene_json)["motion"].erase(grid);
   }
-  compare(before, after, "", faults);
+  compare(scene_before, scene_after, "", faults);
   const std::size_t before_sweeps = faults.size();
   compare_sweeps(*was.scene, scene, faults);
   if (faults.size() == before_sweeps) compare_points(was, scene, points, faults);

@@ -17,15 +17,15 @@ namespace {
 /// Text, or a list of texts that are joined by blanks.
 struct Prose {};
 
-bool read_value(const Prose&, const Reader& in, std::string& prose) {
-  if (in.value().is_string()) {
-    prose = in.value().text();
-  } else if (!in.value().is_array()) {
-    in.fault("expected a string or a list of strings, found " + described(in.value()));
+bool read_value(const Prose&, const Reader& reader, std::string& prose) {
+  if (reader.value().is_string()) {
+    prose = reader.value().text();
+  } else if (!reader.value().is_array()) {
+    reader.fault("expected a string or a list of strings, found " + described(reader.value()));
   } else {
-    for (std::size_t i = 0; i < in.value().size(); ++i) {
+    for (std::size_t i = 0; i < reader.value().size(); ++i) {
       if (i > 0) prose += ' ';
-      prose += in.element(i).text().value_or("");
+      prose += reader.element(i).text().value_or("");
     }
   }
   return true;
@@ -40,35 +40,35 @@ Json value_schema(const Prose&, Definitions&) {
 
 constexpr auto schema_link = irregular(
     "$schema",
-    [](const Reader& in, Scene&) {
-      if (const auto link = in.find("$schema")) link->text();
+    [](const Reader& reader, Scene&) {
+      if (const auto link = reader.find("$schema")) link->text();
     },
     [](const Scene&, Json&) {},
-    [](ObjectSchema& out, Definitions&) {
-      out.properties["$schema"] =
+    [](ObjectSchema& schema, Definitions&) {
+      schema.properties["$schema"] =
           described_as({{"type", "string"}}, "Schema", "Path of scene.schema.json, for editors.",
                        std::nullopt, "");
     });
 
 constexpr auto engine_field = irregular(
     "engine",
-    [](const Reader& in, Scene& scene) {
-      if (const auto engine = in.find("engine")) scene.grains = read_engine(*engine);
+    [](const Reader& reader, Scene& scene) {
+      if (const auto engine = reader.find("engine")) scene.grains = read_engine(*engine);
     },
-    [](const Scene& scene, Json& out) {
-      if (scene.grains) out["engine"] = written_engine(*scene.grains);
+    [](const Scene& scene, Json& json) {
+      if (scene.grains) json["engine"] = written_engine(*scene.grains);
     },
-    [](ObjectSchema& out, Definitions& definitions) {
-      out.properties["engine"] = described_as(engine_schema(definitions), "Engine",
-                                              "The engine that moves the spheres: Monte Carlo, "
-                                              "with its settings in relax and relax_start, or "
-                                              "discrete elements.",
-                                              "monte_carlo", "");
+    [](ObjectSchema& schema, Definitions& definitions) {
+      schema.properties["engine"] = described_as(engine_schema(definitions), "Engine",
+                                                 "The engine that moves the spheres: Monte Carlo, "
+                                                 "with its settings in relax and relax_start, or "
+                                                 "discrete elements.",
+                                                 "monte_carlo", "");
     });
 
 /// A relaxation, which only Monte Carlo has.
-void read_trials(const Reader& in, std::string_view key, bool grains, Relaxation& relaxation) {
-  const auto relax = in.find(std::string(key));
+void read_trials(const Reader& reader, std::string_view key, bool grains, Relaxation& relaxation) {
+  const auto relax = reader.find(std::string(key));
   if (!relax) return;
   if (grains)
     relax->fault(
@@ -81,28 +81,28 @@ constexpr Object<Relaxation> relaxation_form{"relax"};
 
 constexpr auto relax_field = irregular(
     "relax",
-    [](const Reader& in, Scene& scene) {
-      read_trials(in, "relax", scene.grains.has_value(), scene.relax);
+    [](const Reader& reader, Scene& scene) {
+      read_trials(reader, "relax", scene.grains.has_value(), scene.relax);
     },
-    [](const Scene& scene, Json& out) {
-      if (!scene.grains) out["relax"] = written_part(scene.relax);
+    [](const Scene& scene, Json& json) {
+      if (!scene.grains) json["relax"] = written_part(scene.relax);
     },
-    [](ObjectSchema& out, Definitions& definitions) {
-      out.properties["relax"] = described_as(value_schema(relaxation_form, definitions),
-                                             "Relaxation after a tap", "", Json::object(), "");
+    [](ObjectSchema& schema, Definitions& definitions) {
+      schema.properties["relax"] = described_as(value_schema(relaxation_form, definitions),
+                                                "Relaxation after a tap", "", Json::object(), "");
     });
 
 constexpr auto relax_start_field = irregular(
     "relax_start",
-    [](const Reader& in, Scene& scene) {
-      if (in.find("relax_start"))
-        read_trials(in, "relax_start", scene.grains.has_value(), scene.relax_start.emplace());
+    [](const Reader& reader, Scene& scene) {
+      if (reader.find("relax_start"))
+        read_trials(reader, "relax_start", scene.grains.has_value(), scene.relax_start.emplace());
     },
-    [](const Scene& scene, Json& out) {
-      if (scene.relax_start) out["relax_start"] = written_part(*scene.relax_start);
+    [](const Scene& scene, Json& json) {
+      if (scene.relax_start) json["relax_start"] = written_part(*scene.relax_start);
     },
-    [](ObjectSchema& out, Definitions& definitions) {
-      out.properties["relax_start"] = described_as(
+    [](ObjectSchema& schema, Definitions& definitions) {
+      schema.properties["relax_start"] = described_as(
           value_schema(relaxation_form, definitions), "Relaxation of the start",
           "How the start is relaxed before tap 0. Absent: random_settle as after a tap, a fitted "
           "pour not at all. Other starts are at rest and take none.",
@@ -123,50 +123,50 @@ bool keeps_default(const Scene& scene) {
 // The engine decides what is kept by default: where it is swept, "keep" is not spelled out.
 constexpr auto snapshots_field = irregular(
     "snapshots",
-    [](const Reader& in, Scene& scene) {
+    [](const Reader& reader, Scene& scene) {
       scene.snapshots = default_snapshots(scene.grains.has_value());
-      if (const auto snapshots = in.find("snapshots")) read_part(*snapshots, scene.snapshots);
+      if (const auto snapshots = reader.find("snapshots")) read_part(*snapshots, scene.snapshots);
     },
-    [](const Scene& scene, Json& out) {
-      Json& snapshots = out["snapshots"] = written_part(scene.snapshots);
+    [](const Scene& scene, Json& json) {
+      Json& snapshots = json["snapshots"] = written_part(scene.snapshots);
       if (sweeps_engine(scene) && keeps_default(scene)) snapshots.erase("keep");
     },
-    [](ObjectSchema& out, Definitions& definitions) {
-      out.properties["snapshots"] =
+    [](ObjectSchema& schema, Definitions& definitions) {
+      schema.properties["snapshots"] =
           described_as(part_schema(std::type_identity<SnapshotChoice>{}, definitions), "Snapshots",
                        "Packings kept at chosen taps; tap 0 is the start.", Json::object(), "");
     });
 
 constexpr auto spheres_field = irregular(
     "spheres",
-    [](const Reader& in, Scene& scene) {
-      if (const auto spheres = in.find("spheres"))
+    [](const Reader& reader, Scene& scene) {
+      if (const auto spheres = reader.find("spheres"))
         read_spheres(*spheres, scene);
       else
-        in.missing("spheres", "the number of spheres, a whole number, or a list of kinds");
+        reader.missing("spheres", "the number of spheres, a whole number, or a list of kinds");
     },
-    [](const Scene& scene, Json& out) { out["spheres"] = written_spheres(scene); },
-    [](ObjectSchema& out, Definitions& definitions) {
-      out.properties["spheres"] = described_as(
+    [](const Scene& scene, Json& json) { json["spheres"] = written_spheres(scene); },
+    [](ObjectSchema& schema, Definitions& definitions) {
+      schema.properties["spheres"] = described_as(
           spheres_schema(definitions), "Spheres",
           "The number of equal spheres of diameter 1, or the kinds of a mixture. A start from a "
           "file takes the sizes that the file holds.",
           std::nullopt, "[4096, 3456]");
-      out.required.emplace_back("spheres");
+      schema.required.emplace_back("spheres");
     });
 
 // Equal spheres are poured as they are numbered: they have no order that scenes could name.
 constexpr auto pour_order_field = irregular(
     "pour_order",
-    [](const Reader& in, Scene& scene) {
-      if (const auto order = in.find("pour_order"))
+    [](const Reader& reader, Scene& scene) {
+      if (const auto order = reader.find("pour_order"))
         read_value(word(pour_orders), *order, scene.pour_order);
     },
-    [](const Scene& scene, Json& out) {
-      if (!scene.kinds.empty()) out["pour_order"] = name_in(pour_orders, scene.pour_order);
+    [](const Scene& scene, Json& json) {
+      if (!scene.kinds.empty()) json["pour_order"] = name_in(pour_orders, scene.pour_order);
     },
-    [](ObjectSchema& out, Definitions& definitions) {
-      out.properties["pour_order"] = described_as(
+    [](ObjectSchema& schema, Definitions& definitions) {
+      schema.properties["pour_order"] = described_as(
           value_schema(word(pour_orders), definitions), "Order of pouring",
           "The order in which the spheres of a mixture are poured. Spheres with a place come "
           "first. The numbers of the spheres are those of the list of kinds.",
@@ -177,17 +177,17 @@ constexpr auto pour_order_field = irregular(
 constexpr auto observe_form = list_of(OneOf<Observable>{.by_name = true}, 0, 100, "observables");
 constexpr auto observe_field = irregular(
     "observe",
-    [](const Reader& in, Scene& scene) {
-      if (const auto observe = in.find("observe"))
+    [](const Reader& reader, Scene& scene) {
+      if (const auto observe = reader.find("observe"))
         read_value(observe_form, *observe, scene.observables);
       else if (!scene.kinds.empty())
         scene.observables = default_observables(scene.kinds);
     },
-    [](const Scene& scene, Json& out) {
-      out["observe"] = written_value(observe_form, scene.observables);
+    [](const Scene& scene, Json& json) {
+      json["observe"] = written_value(observe_form, scene.observables);
     },
-    [](ObjectSchema& out, Definitions& definitions) {
-      out.properties["observe"] =
+    [](ObjectSchema& schema, Definitions& definitions) {
+      schema.properties["observe"] =
           described_as(value_schema(observe_form, definitions), "Observables",
                        "Observables measured at the start and after every tap.",
                        written_default(observe_form, Scene{}.observables), "");
@@ -332,9 +332,9 @@ ParsedScene checked(const Json& document, std::vector<Fault> faults) {
 
 }  // namespace
 
-Scene read_scene(const Reader& in) {
+Scene read_scene(const Reader& reader) {
   Scene scene;
-  read_object(scene_fields(), in, scene);
+  read_object(scene_fields(), reader, scene);
   return scene;
 }
 

@@ -42,7 +42,7 @@ struct PackingFile {
     return members(a) < members(b);
   }
 
-  static constexpr About about{
+  static constexpr Description description{
       "file",
       "Results of an earlier run (.h5, .hdf5) or extended XYZ (.xyz, .extxyz); a path from the "
       "folder of the scene",
@@ -59,12 +59,12 @@ struct ChosenStart<std::variant<Starts...>> {
 };
 using StartChoice = ChosenStart<Start>::Type;
 
-/// Strengths from `from` to `to`, both included, `step` apart; downwards where from > to. With
+/// Strengths from `start` to `end`, both included, `step` apart; downwards where from > to. With
 /// square_root the three are square roots, and a tap's strength is their square: [PB]'s control
 /// parameter is epsilon^(1/2).
 enum class RampScale { linear, square_root };
 struct Ramp {
-  double from = 0, to = 0, step = 0;
+  double start = 0, end = 0, step = 0;
   RampScale scale = RampScale::linear;
   bool operator==(const Ramp&) const = default;
 };
@@ -82,9 +82,9 @@ struct ProtocolLine {
   bool operator==(const ProtocolLine&) const = default;
 };
 
-/// Taps from 10^(k / per_decade) x `from`, rounded, at most `to`; and `also`, any others.
+/// Taps from 10^(k / per_decade) x `first`, rounded, at most `last`; and `also`, any others.
 struct LogarithmicTaps {
-  std::uint64_t from = 1, to = 1;
+  std::uint64_t first = 1, last = 1;
   std::uint32_t per_decade = 3;
   std::vector<std::uint64_t> also = {};  // ascending
   bool operator==(const LogarithmicTaps&) const = default;
@@ -123,7 +123,8 @@ struct MotionChoice {
             "Taps after an origin at which they are measured, at most 1000, the first at least 1. "
             "Default: ten per decade"),
         field("overlap_lengths", &MotionChoice::overlap_lengths,
-              list_of(Number{above(0, 100)}, 1, most_overlap_lengths, "lengths in diameters", true),
+              list_of(Number{left_open_range(0, 100)}, 1, most_overlap_lengths,
+                      "lengths in diameters", true),
               "Lengths a in diameters: the overlap is the fraction of spheres that moved less"),
         field("layers", &MotionChoice::layers, Whole{1, most_motion_layers},
               "Layers of equal numbers of spheres, by height at the origin")};
@@ -171,9 +172,9 @@ struct AnalysisRequest {
 template <class Part, class Settings>
 constexpr auto asked_for(std::vector<AnalysisRequest<Settings>> Part::*member,
                          bool unless_empty = false) {
-  return field(Settings::about.name, member,
+  return field(Settings::description.name, member,
                list_of(Object<AnalysisRequest<Settings>>{}, 0, 100, "analyses"),
-               Settings::about.text, {.unless_default = unless_empty});
+               Settings::description.text, {.unless_default = unless_empty});
 }
 
 /// Analyses made at the end of a run, at every sweep point. docs/reference/analyses.md.
@@ -298,6 +299,6 @@ std::vector<Fault> resume_faults(const ParsedScene& was, const Scene& scene,
 /// One scene of two that differ in the values of their sweep alone, and maybe in name and
 /// description, which are the first one's: every axis with the values of both, the first one's
 /// first. Faults where anything else differs, and those of either.
-ParsedScene join_sweeps(const ParsedScene& first, const ParsedScene& other);
+ParsedScene join_sweeps(const ParsedScene& first, const ParsedScene& second);
 
 }  // namespace jostle::inline config

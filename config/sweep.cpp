@@ -22,15 +22,15 @@ const std::vector<std::string> swept_parts{"container", "spheres",  "pour_order"
 
 /// Every pointer that leads somewhere in a value.
 void collect_pointers(const Json& value, const std::string& pointer,
-                      std::vector<std::string>& into) {
-  if (!pointer.empty()) into.push_back(pointer);
+                      std::vector<std::string>& target) {
+  if (!pointer.empty()) target.push_back(pointer);
   if (value.is_object()) {
     for (const auto& [key, member] : value.members()) {
-      collect_pointers(member, pointer_to(pointer, key), into);
+      collect_pointers(member, pointer_to(pointer, key), target);
     }
   } else if (value.is_array()) {
     for (std::size_t i = 0; i < value.size(); ++i) {
-      collect_pointers(value.at(i), pointer_to(pointer, i), into);
+      collect_pointers(value.at(i), pointer_to(pointer, i), target);
     }
   }
 }
@@ -110,10 +110,11 @@ class SweepCheck {
 
  private:
   void check_pointer(const std::string& pointer) {
-    const std::string here = location(written_sweep_, pointer);
-    for (const std::string& other : seen_) {
-      if (is_within(pointer, other) || is_within(other, pointer)) {
-        faults_.push_back({here, fmt::format("sets what {} sets too: sweep one of them", other)});
+    const std::string place = location(written_sweep_, pointer);
+    for (const std::string& pointer_seen : seen_) {
+      if (is_within(pointer, pointer_seen) || is_within(pointer_seen, pointer)) {
+        faults_.push_back(
+            {place, fmt::format("sets what {} sets too: sweep one of them", pointer_seen)});
       }
     }
     seen_.push_back(pointer);
@@ -124,15 +125,16 @@ class SweepCheck {
     if (leads_somewhere(may_be_swept_, pointer)) return;
     if (leads_somewhere(resolved_, pointer)) {
       faults_.push_back(
-          {here, fmt::format("{} belongs to the study as a whole and cannot be swept (a sweep sets "
-                             "values in {})",
-                             pointer, listed(swept_parts))});
+          {place,
+           fmt::format("{} belongs to the study as a whole and cannot be swept (a sweep sets "
+                       "values in {})",
+                       pointer, listed(swept_parts))});
       return;
     }
     std::vector<std::string> pointers;
     collect_pointers(may_be_swept_, "", pointers);
-    faults_.push_back({here, fmt::format("{} leads to no value of the resolved scene.{}", pointer,
-                                         did_you_mean(pointer, pointers))});
+    faults_.push_back({place, fmt::format("{} leads to no value of the resolved scene.{}", pointer,
+                                          did_you_mean(pointer, pointers))});
   }
 
   bool points_are_few() {
@@ -148,11 +150,11 @@ class SweepCheck {
 
   /// Checks the size of the lists that a results file has of all points.
   void check_amounts(std::uint64_t points) {
-    const auto check = [&](const char* pointer, const char* what, std::uint64_t n,
+    const auto check = [&](const char* pointer, const char* subject, std::uint64_t n,
                            std::uint64_t most) {
       if (n * points <= most) return;
       faults_.push_back({pointer, fmt::format("{} {} at {} sweep points are more than {} in all", n,
-                                              what, points, most)});
+                                              subject, points, most)});
     };
     const bool grows = !scene_.until.targets.empty();
     const std::uint64_t realizations =
@@ -194,12 +196,13 @@ class SweepCheck {
       }
     }
     for (const auto& [fault, n_points, label] : found) {
-      std::string where;
+      std::string place_text;
       if (!label.empty()) {
-        where = n_points == 1 ? fmt::format(" (at the sweep point {})", label)
-                              : fmt::format(" (at {} sweep points, first {})", n_points, label);
+        place_text = n_points == 1
+                         ? fmt::format(" (at the sweep point {})", label)
+                         : fmt::format(" (at {} sweep points, first {})", n_points, label);
       }
-      faults_.push_back({fault.pointer, fault.message + where});
+      faults_.push_back({fault.pointer, fault.message + place_text});
     }
     return scenes;
   }
@@ -222,11 +225,11 @@ class SweepCheck {
   void points_differ(const std::vector<SweepPoint>& points) {
     std::map<std::uint64_t, std::size_t> first;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const auto [other, is_new] = first.emplace(point_id(points[i]), i);
+      const auto [earlier, is_new] = first.emplace(point_id(points[i]), i);
       if (is_new) continue;
       faults_.push_back(
           {"/sweep", fmt::format("points {} and {} are the same, {}: list a value once",
-                                 other->second, i, point_label(points[i]))});
+                                 earlier->second, i, point_label(points[i]))});
     }
   }
 
@@ -287,10 +290,10 @@ std::string point_label(const SweepPoint& point) {
   std::vector<std::string> parts;
   for (const auto& [pointer, value] : point.values) {
     const std::string name = short_name(pointer);
-    const auto same =
+    const auto is_same =
         std::count_if(point.values.begin(), point.values.end(),
-                      [&](const auto& other) { return short_name(other.first) == name; });
-    parts.push_back(fmt::format("{} = {}", same > 1 ? pointer : name, canonical_text(value)));
+                      [&](const auto& entry) { return short_name(entry.first) == name; });
+    parts.push_back(fmt::format("{} = {}", is_same > 1 ? pointer : name, canonical_text(value)));
   }
   return joined(parts, ", ");
 }

@@ -23,13 +23,13 @@ struct Effort {
   std::uint64_t units = 0;       // units of the engine: trials, sphere steps
   std::uint64_t pair_tests = 0;  // pair distances computed in them
 
-  Effort& operator+=(const Effort& other) {
-    units += other.units;
-    pair_tests += other.pair_tests;
+  Effort& operator+=(const Effort& rhs) {
+    units += rhs.units;
+    pair_tests += rhs.pair_tests;
     return *this;
   }
-  Effort operator-(const Effort& other) const {
-    return {units - other.units, pair_tests - other.pair_tests};
+  Effort operator-(const Effort& rhs) const {
+    return {units - rhs.units, pair_tests - rhs.pair_tests};
   }
 };
 

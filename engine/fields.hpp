@@ -24,13 +24,13 @@ struct Range {
            (high_included ? value <= high : value < high);
   }
 };
-constexpr Range between(double low, double high) {
+constexpr Range closed_range(double low, double high) {
   return {low, high};
 }
-constexpr Range above(double low, double high) {
+constexpr Range left_open_range(double low, double high) {
   return {low, high, false, true};
 }
-constexpr Range strictly_between(double low, double high) {
+constexpr Range open_range(double low, double high) {
   return {low, high, false, false};
 }
 
@@ -39,7 +39,7 @@ template <class Enum, std::size_t n>
 using NameTable = std::array<std::pair<std::string_view, Enum>, n>;
 
 /// A part that is one of several: what scenes call it, and what it is.
-struct About {
+struct Description {
   std::string_view name;
   std::string_view text = {};
   std::string_view title = {};
@@ -107,7 +107,7 @@ constexpr Bounds bounds(Range range) {
   return {range, range};
 }
 /// Heights above a floor, diameters.
-inline constexpr Bounds height_bounds = bounds(between(0, 1e6));
+inline constexpr Bounds height_bounds = bounds(closed_range(0, 1e6));
 
 /// A list of taps, or a logarithmic grid.
 struct TapNumbers {};

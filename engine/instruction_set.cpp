@@ -41,8 +41,8 @@ std::string_view name(InstructionSet set) {
 
 std::vector<InstructionSet> instruction_sets() {
   std::vector<InstructionSet> usable;
-  for (const Entry& one : entries) {
-    if (one.usable()) usable.push_back(one.set);
+  for (const Entry& entry : entries) {
+    if (entry.usable()) usable.push_back(entry.set);
   }
   return usable;
 }
@@ -52,9 +52,9 @@ InstructionSet best_instruction_set() {
   const char* wanted = std::getenv("JOSTLE_INSTRUCTION_SET");
   if (!wanted) return usable.back();
   std::string names;
-  for (const InstructionSet one : usable) {
-    if (wanted == name(one)) return one;
-    names += (names.empty() ? "" : ", ") + std::string(name(one));
+  for (const InstructionSet instructions : usable) {
+    if (wanted == name(instructions)) return instructions;
+    names += (names.empty() ? "" : ", ") + std::string(name(instructions));
   }
   throw std::invalid_argument(std::string("JOSTLE_INSTRUCTION_SET is \"") + wanted +
                               "\", which this machine does not have: use one of " + names);

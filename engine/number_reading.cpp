@@ -18,51 +18,51 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-const char* after_digits(const char* at, const char* end) {
-  while (at != end && is_digit(*at)) ++at;
-  return at;
+const char* after_digits(const char* position, const char* end) {
+  while (position != end && is_digit(*position)) ++position;
+  return position;
 }
 
 /// The end of "inf", "infinity", "nan" or "nan(...)" in either case; `begin` where it is none.
 const char* after_word(const char* begin, const char* end) {
-  const auto starts_with = [=](const char* word, const char* at) {
-    for (; *word != 0; ++word, ++at) {
-      if (at == end || (*at | 0x20) != *word) return false;
+  const auto starts_with = [=](const char* word, const char* position) {
+    for (; *word != 0; ++word, ++position) {
+      if (position == end || (*position | 0x20) != *word) return false;
     }
     return true;
   };
   if (starts_with("infinity", begin)) return begin + 8;
   if (starts_with("inf", begin)) return begin + 3;
   if (!starts_with("nan", begin)) return begin;
-  const char* at = begin + 3;
-  if (at == end || *at != '(') return at;
+  const char* position = begin + 3;
+  if (position == end || *position != '(') return position;
   do {
-    ++at;
-  } while (at != end &&
-           (is_digit(*at) || *at == '_' || ((*at | 0x20) >= 'a' && (*at | 0x20) <= 'z')));
-  return at != end && *at == ')' ? at + 1 : begin + 3;
+    ++position;
+  } while (position != end && (is_digit(*position) || *position == '_' ||
+                               ((*position | 0x20) >= 'a' && (*position | 0x20) <= 'z')));
+  return position != end && *position == ')' ? position + 1 : begin + 3;
 }
 
 /// The end of the longest number from `begin`, or `begin`.
 const char* after_number(const char* begin, const char* end, std::chars_format format) {
   const char* const digits = begin != end && *begin == '-' ? begin + 1 : begin;
   if (const char* const word = after_word(digits, end); word != digits) return word;
-  const char* at = after_digits(digits, end);
-  auto n_digits = at - digits;
-  if (at != end && *at == '.') {
-    const char* const behind = after_digits(at + 1, end);
-    n_digits += behind - (at + 1);
-    if (n_digits > 0) at = behind;
+  const char* position = after_digits(digits, end);
+  auto n_digits = position - digits;
+  if (position != end && *position == '.') {
+    const char* const tail = after_digits(position + 1, end);
+    n_digits += tail - (position + 1);
+    if (n_digits > 0) position = tail;
   }
   if (n_digits == 0) return begin;
-  if ((format & std::chars_format::scientific) == std::chars_format{}) return at;
-  if (at != end && (*at | 0x20) == 'e') {
-    const char* exponent = at + 1;
+  if ((format & std::chars_format::scientific) == std::chars_format{}) return position;
+  if (position != end && (*position | 0x20) == 'e') {
+    const char* exponent = position + 1;
     if (exponent != end && (*exponent == '+' || *exponent == '-')) ++exponent;
-    const char* const behind = after_digits(exponent, end);
-    if (behind != exponent) at = behind;
+    const char* const tail = after_digits(exponent, end);
+    if (tail != exponent) position = tail;
   }
-  return at;
+  return position;
 }
 
 }  // namespace

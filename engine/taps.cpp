@@ -27,7 +27,7 @@ std::vector<std::uint32_t> random_order(std::size_t n, RandomStream& random) {
   std::vector<std::uint32_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
   for (std::size_t left = n; left > 1; --left) {
-    std::swap(order[left - 1], order[random.below(left)]);
+    std::swap(order[left - 1], order[random.integer_below(left)]);
   }
   return order;
 }

@@ -14,14 +14,14 @@
 namespace jostle::inline engine {
 
 /// The strength of a dilation.
-inline constexpr Strength dilation_strength{between(0, 10), "", true};
+inline constexpr Strength dilation_strength{closed_range(0, 10), "", true};
 
 /// z -> z (1 + epsilon). Philippe & Bideau 2001, sec. II.
 struct Dilate {
   double epsilon = 0.02;
   bool operator==(const Dilate&) const = default;
 
-  static constexpr About about{"dilate", "epsilon: z -> z (1 + epsilon)"};
+  static constexpr Description description{"dilate", "epsilon: z -> z (1 + epsilon)"};
   static constexpr auto fields() {
     return std::tuple{field("", &Dilate::epsilon, dilation_strength, "", {.examples = "[0.02]"})};
   }
@@ -34,7 +34,7 @@ struct DilateFloorHeld {
   double delta = 0.025;
   bool operator==(const DilateFloorHeld&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "dilate_floor_held",
       "Delta: (z - 1/2) -> (z - 1/2)(1 + Delta); spheres on the floor keep their height"};
   static constexpr auto fields() {
@@ -48,9 +48,9 @@ struct Lift {
   double gamma = 0.25;
   bool operator==(const Lift&) const = default;
 
-  static constexpr About about{"lift", "gamma: z -> z + gamma, diameters"};
+  static constexpr Description description{"lift", "gamma: z -> z + gamma, diameters"};
   static constexpr auto fields() {
-    return std::tuple{field("", &Lift::gamma, Strength{between(0, 100), "diameters"}, "",
+    return std::tuple{field("", &Lift::gamma, Strength{closed_range(0, 100), "diameters"}, "",
                             {.examples = "[0.25]"})};
   }
 };
@@ -64,12 +64,12 @@ struct Shake {
   std::uint32_t retries = 10;
   bool operator==(const Shake&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "shake", "z -> z (1 + lambda), then random lateral offsets that never overlap"};
   static constexpr auto fields() {
     return std::tuple{
         field("lambda", &Shake::lambda, dilation_strength),
-        field("lateral_radius", &Shake::lateral_radius, Number{between(0, 1), "diameters"},
+        field("lateral_radius", &Shake::lateral_radius, Number{closed_range(0, 1), "diameters"},
               "Radius of the disc of the lateral offsets"),
         field("retries", &Shake::retries, Whole{0, 1000},
               "How often an offset that would overlap is drawn again before it is dropped")};
@@ -87,9 +87,9 @@ template <class Tap>
 constexpr auto floor_fields() {
   return std::tuple{keyed_number<Tap, FloorStrength, 2>(
                         &Tap::strength, &Tap::kind, floor_strengths,
-                        {Number{between(0, 100), "diameters"}, Number{between(0, 100)}},
+                        {Number{closed_range(0, 100), "diameters"}, Number{closed_range(0, 100)}},
                         {"a", "Gamma = a (2 pi f)^2 / g, in place of the amplitude"}),
-                    field("frequency", &Tap::frequency, Number{between(1e-3, 1e6), "Hz"})};
+                    field("frequency", &Tap::frequency, Number{closed_range(1e-3, 1e6), "Hz"})};
 }
 
 /// The floor rises and falls as a sin(2 pi f t) for half a period, then rests: Rosato et al. 2010,
@@ -100,7 +100,7 @@ struct HalfSine {
   FloorStrength kind = FloorStrength::amplitude;
   bool operator==(const HalfSine&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "half_sine",
       "The floor moves as a sin(2 pi f t) for half a period: amplitude a in diameters, frequency f "
       "in Hz. Discrete elements"};
@@ -119,7 +119,7 @@ struct Vibration {
   FloorStrength kind = FloorStrength::amplitude;
   bool operator==(const Vibration&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "vibration", "The floor moves as a sin(2 pi f t) for whole periods. Discrete elements"};
   static constexpr auto fields() {
     return std::tuple_cat(

@@ -13,9 +13,9 @@ void Moments::add(double value) {
   if (count_ == 0) origin_ = value;
   ++count_;
   const double x = value - origin_;
-  const double before = x - mean_;
-  mean_ += before / static_cast<double>(count_);
-  sum_of_squares_ += before * (x - mean_);
+  const double deviation = x - mean_;
+  mean_ += deviation / static_cast<double>(count_);
+  sum_of_squares_ += deviation * (x - mean_);
 }
 
 double Moments::mean() const {

@@ -15,19 +15,19 @@ std::variant<ProtocolSteps, std::string> protocol_steps(std::span<const Stage> p
   std::uint64_t last = 0;
   for (const Stage& stage : protocol) {
     if (stage.count == 0) continue;
-    const Control here = control(stage.tap);
-    if (!steps.control.empty() && steps.control != here.name) {
-      return "The protocol taps in different ways (" + steps.control + ", " + here.name +
+    const Control current = control(stage.tap);
+    if (!steps.control.empty() && steps.control != current.name) {
+      return "The protocol taps in different ways (" + steps.control + ", " + current.name +
              "), whose strengths cannot be compared: use one kind of tap.";
     }
-    steps.control = here.name;
-    steps.units = here.units;
-    steps.strengths.push_back(here.value);
+    steps.control = current.name;
+    steps.units = current.units;
+    steps.strengths.push_back(current.value);
     last += stage.count;
     steps.windows.push_back({last + 1 - std::min(last_taps, stage.count), last});
   }
-  const auto same = [&](double strength) { return strength == steps.strengths.front(); };
-  if (std::ranges::all_of(steps.strengths, same)) {
+  const auto is_same = [&](double strength) { return strength == steps.strengths.front(); };
+  if (std::ranges::all_of(steps.strengths, is_same)) {
     return std::string(
         "The protocol has taps of one strength only, so there is no branch: hysteresis "
         "needs a ramp, and a loop one up and one down.");

@@ -56,11 +56,11 @@ Slice Realization::advance(std::uint64_t units, const StopAsked& stop) {
   Slice slice;
   if (!state_.relaxing && state_.rows == 0 && !start(stop)) return slice;
   if (!state_.relaxing && state_.rows > 0) tap();
-  const Effort before = dynamics_->effort();
+  const Effort effort_before = dynamics_->effort();
   const auto began = ProcessorClock::now();
   state_.relaxing = dynamics_->advance(units) == DynamicsStatus::running;
   slice.relaxing = ProcessorClock::now() - began;
-  slice.effort = dynamics_->effort() - before;
+  slice.effort = dynamics_->effort() - effort_before;
   if (!state_.relaxing) record(slice);
   return slice;
 }

@@ -69,10 +69,10 @@ struct Work {
   double start_seconds = 0;  // seconds until tap 0 was recorded
   Effort effort{};
 
-  Work& operator+=(const Work& other) {
-    seconds += other.seconds;
-    start_seconds += other.start_seconds;
-    effort += other.effort;
+  Work& operator+=(const Work& rhs) {
+    seconds += rhs.seconds;
+    start_seconds += rhs.start_seconds;
+    effort += rhs.effort;
     return *this;
   }
 };

@@ -20,12 +20,12 @@ double wanted(double realizations, const SpreadFound& found) {
 
 std::uint32_t next_realizations(std::uint32_t realizations, std::span<const SpreadFound> found,
                                 std::uint32_t at_most) {
-  if (std::ranges::all_of(found, [](const SpreadFound& one) { return one.met(); })) {
+  if (std::ranges::all_of(found, [](const SpreadFound& spread) { return spread.met(); })) {
     return realizations;
   }
   double most = static_cast<double>(realizations) + 1;
-  for (const SpreadFound& one : found) {
-    most = std::max(most, wanted(static_cast<double>(realizations), one));
+  for (const SpreadFound& spread : found) {
+    most = std::max(most, wanted(static_cast<double>(realizations), spread));
   }
   const double limit = std::max(at_most, realizations);
   return static_cast<std::uint32_t>(std::min(most, limit));

@@ -16,7 +16,7 @@ namespace jostle::inline ensemble {
 enum class Spread { standard_error, sigma };
 inline constexpr NameTable<Spread, 2> spread_names{
     {{"standard_error", Spread::standard_error}, {"sigma", Spread::sigma}}};
-inline constexpr Number spread_number{above(0, 1e6)};
+inline constexpr Number spread_number{left_open_range(0, 1e6)};
 
 struct SpreadTarget {
   std::string observable;

@@ -49,12 +49,12 @@ class BinnedLaw final : public Model {
     return sum;
   }
   std::vector<std::vector<double>> candidates(const Curve& curve) const override {
-    Curve along = curve;
-    for (double& t : along.t) {
+    Curve midpoints = curve;
+    for (double& t : midpoints.t) {
       const Bin& bin = bins_[static_cast<std::size_t>(t)];
       t = 0.5 * (bin.low + bin.high);
     }
-    return law_.candidates(along);
+    return law_.candidates(midpoints);
   }
 
  private:
@@ -137,8 +137,8 @@ CountsFit most_likely(const Model& law, const Curve& counts, const ParameterValu
   for (std::size_t j = 0; j < found.values.size(); ++j) {
     const Parameter& parameter = law.parameters()[j];
     const auto k = static_cast<Eigen::Index>(j);
-    const bool away = parameter.lower == 0 && !(variance(k, k) < most_log_variance);
-    if (away) lost += (lost.empty() ? "" : ", ") + parameter.name;
+    const bool unbounded = parameter.lower == 0 && !(variance(k, k) < most_log_variance);
+    if (unbounded) lost += (lost.empty() ? "" : ", ") + parameter.name;
   }
   if (!lost.empty()) found.fault = "the data do not limit " + lost;
   for (const double t : counts.t) found.expected.push_back(law.value(t, found.values.data()));

@@ -15,12 +15,12 @@ constexpr double least_size = 1e-120, largest_size = 1e120, widest_ratio = 1e30;
 
 // "t is not finite at 2 points, the first being number 3 (nan)"
 template <typename Bad>
-void report(const std::vector<double>& values, const char* what, Bad bad,
+void report(const std::vector<double>& values, const char* message, Bad bad,
             std::vector<std::string>& faults) {
   const auto first = std::find_if(values.begin(), values.end(), bad);
   if (first == values.end()) return;
   std::ostringstream text;
-  text << what << " at " << std::count_if(first, values.end(), bad) << " of " << values.size()
+  text << message << " at " << std::count_if(first, values.end(), bad) << " of " << values.size()
        << " points, the first being number " << first - values.begin() + 1 << " (" << *first << ")";
   faults.push_back(text.str());
 }
@@ -149,7 +149,7 @@ std::vector<std::string> faults(const Curve& curve) {
   return found;
 }
 
-Curve within(const Curve& curve, double first, double last) {
+Curve restricted(const Curve& curve, double first, double last) {
   std::vector<std::size_t> points;
   for (std::size_t i = 0; i < curve.t.size(); ++i) {
     if (curve.t[i] >= first && curve.t[i] <= last) points.push_back(i);
@@ -172,9 +172,10 @@ Curve thinned(const Curve& curve, std::size_t n) {
     std::size_t rank = static_cast<std::size_t>(share * static_cast<double>(order.size() - 1));
     if (logarithmic) {
       const double wanted = first * std::pow(last / first, share) * (1 - 1e-12);
-      const auto at = std::partition_point(order.begin(), order.end(),
-                                           [&](std::size_t i) { return curve.t[i] < wanted; });
-      rank = std::min<std::size_t>(static_cast<std::size_t>(at - order.begin()), order.size() - 1);
+      const auto found = std::partition_point(order.begin(), order.end(),
+                                              [&](std::size_t i) { return curve.t[i] < wanted; });
+      rank =
+          std::min<std::size_t>(static_cast<std::size_t>(found - order.begin()), order.size() - 1);
     }
     if (rank == taken) continue;
     taken = rank;

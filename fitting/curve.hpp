@@ -39,7 +39,7 @@ Curve with_pooled_errors(Curve curve, bool relative = false);
 std::vector<std::string> faults(const Curve& curve);
 
 /// The points with first <= t <= last.
-Curve within(const Curve& curve, double first, double last);
+Curve restricted(const Curve& curve, double first, double last);
 
 /// At most `n` of the points: all, or those nearest to n values equally spaced in log t (where
 /// every t > 0 and they span more than a factor 100) or in rank. Deterministic.

@@ -138,9 +138,9 @@ bool Fitter::descend(const ParameterValues& start, int number) {
 bool Fitter::descend_from_all() {
   int agreeing = 0;
   for (const ParameterValues& start : starts()) {
-    const double before = values_.empty() ? infinite : best_.cost;
+    const double previous = values_.empty() ? infinite : best_.cost;
     const bool agrees = descend(start, tried_++);
-    if (!values_.empty() && best_.cost < before * (1 - 1e-6)) agreeing = 0;
+    if (!values_.empty() && best_.cost < previous * (1 - 1e-6)) agreeing = 0;
     if (agrees && ++agreeing == 2) break;
   }
   return !values_.empty();
@@ -234,9 +234,9 @@ bool Fitter::find_intervals(const DependentErrors& errors, Fit& fit) {
     }
     const ParameterProfile found = profile(problem, j, estimate.standard_error);
     if (found.better && !options_.solver.budget->spent()) {
-      const double before = best_.cost;
+      const double previous = best_.cost;
       descend(*found.better, best_start_);
-      if (best_.cost < before) return false;
+      if (best_.cost < previous) return false;
     }
     estimate.intervals[0] = found.intervals[0];
     estimate.intervals[1] = found.intervals[1];

@@ -133,10 +133,10 @@ class NearLimit {
   std::optional<ParameterProfile> profiled_from(const ParameterValues& place, std::size_t j,
                                                 double error, int side) const {
     const auto [first, last] = times(curve_);
-    const ParameterValues before = limit_.near(at_limit_, 1e2, first, last);
-    if (!inside(model_, before)) return std::nullopt;
+    const ParameterValues start_values = limit_.near(at_limit_, 1e2, first, last);
+    if (!inside(model_, start_values)) return std::nullopt;
     Fit counts = found_;
-    LinearProblem linear = linear_problem(model_, curve_, before, free_);
+    LinearProblem linear = linear_problem(model_, curve_, start_values, free_);
     if (!linear.jacobian.allFinite()) return std::nullopt;
     linear.curvature = nullptr;  // this is beside the minimum
     const DependentErrors errors = dependent_errors(curve_, linear, options_.memory, counts);
@@ -258,8 +258,8 @@ std::variant<Fit, Refusal> fit_at_limit(const Model& model, const Curve& curve,
   std::vector<std::string> lost;
   for (std::size_t j = 0; j < model.parameters().size(); ++j) {
     const Parameter& parameter = model.parameters()[j];
-    if (const auto same = index_of(*limit.law, parameter.name)) {
-      fit.estimates.push_back(found.estimates[*same]);
+    if (const auto shared = index_of(*limit.law, parameter.name)) {
+      fit.estimates.push_back(found.estimates[*shared]);
       fit.estimates.back().parameter = parameter;
       if (profiled && fit.estimates.back().identifiability > Identifiability::not_examined) {
         near.widen(place, j, fit.estimates.back());

@@ -78,10 +78,10 @@ Rows influences(const Layout& layout, const Rows& noise, const Eigen::VectorXd& 
 
 // A matrix without one of its columns.
 Rows without_column(const Rows& all, Eigen::Index left_out) {
-  const Eigen::Index behind = all.cols() - 1 - left_out;
+  const Eigen::Index n_after = all.cols() - 1 - left_out;
   Rows kept(all.rows(), all.cols() - 1);
   kept.leftCols(left_out) = all.leftCols(left_out);
-  kept.rightCols(behind) = all.rightCols(behind);
+  kept.rightCols(n_after) = all.rightCols(n_after);
   return kept;
 }
 
@@ -91,9 +91,9 @@ Rows without_column(const Rows& all, Eigen::Index left_out) {
 Rows jackknife_influences(const Rows& present, const Rows& values, const Effects& found) {
   Rows influence(values.rows(), values.cols());
   for (Eigen::Index r = 0; r < values.cols(); ++r) {
-    const Effects others =
+    const Effects reduced_effects =
         effects(layout_of(without_column(present, r)), without_column(values, r));
-    influence.col(r) = static_cast<double>(values.cols() - 1) * (found.mean - others.mean);
+    influence.col(r) = static_cast<double>(values.cols() - 1) * (found.mean - reduced_effects.mean);
   }
   const Eigen::VectorXd means = influence.rowwise().mean();
   influence.colwise() -= means;
@@ -121,7 +121,7 @@ std::vector<std::vector<std::size_t>> linked_groups(const std::vector<double>& v
   }
   std::vector<std::vector<std::size_t>> groups(n_realizations);
   for (std::size_t r = 0; r < n_realizations; ++r) groups[group[r]].push_back(r);
-  std::erase_if(groups, [](const auto& one) { return one.empty(); });
+  std::erase_if(groups, [](const auto& element) { return element.empty(); });
   return groups;
 }
 
@@ -130,11 +130,11 @@ namespace {
 // True if the offsets of the others are known from each other whichever realization is left out.
 bool links_without_any(const std::vector<double>& values, std::size_t n_realizations) {
   for (std::size_t left_out = 0; left_out < n_realizations; ++left_out) {
-    std::vector<double> others;
+    std::vector<double> remaining;
     for (std::size_t k = 0; k < values.size(); ++k) {
-      if (k % n_realizations != left_out) others.push_back(values[k]);
+      if (k % n_realizations != left_out) remaining.push_back(values[k]);
     }
-    if (linked_groups(others, n_realizations - 1).size() > 1) return false;
+    if (linked_groups(remaining, n_realizations - 1).size() > 1) return false;
   }
   return true;
 }

@@ -82,8 +82,8 @@ std::string parameter_table(const std::vector<Estimate>& estimates) {
 std::string listed_units(const Fit& fit, const CurveUnits& units) {
   std::vector<std::pair<std::string, std::string>> groups;  // unit, names
   std::set<std::string> known;
-  for (const ParameterTable& one : parameter_tables(fit)) {
-    for (const Estimate& e : one.estimates) {
+  for (const ParameterTable& table : parameter_tables(fit)) {
+    for (const Estimate& e : table.estimates) {
       const std::string unit = unit_text(e.parameter.unit, units);
       if (unit == "1" || !known.insert(e.parameter.name).second) continue;
       auto group = std::ranges::find(groups, unit, &std::pair<std::string, std::string>::first);
@@ -171,8 +171,8 @@ std::string listed_verdicts(const Fit& fit) {
     listed += (listed.empty() ? "" : ", ") + estimate.parameter.name;
   }
   std::string text;
-  for (const auto& [what, listed] : names) {
-    text += (text.empty() ? "" : "; ") + listed + " " + verdict_text(what);
+  for (const auto& [identifiability, listed] : names) {
+    text += (text.empty() ? "" : "; ") + listed + " " + verdict_text(identifiability);
   }
   return text;
 }
@@ -278,9 +278,9 @@ std::string describe(const Fit& fit, ReportDetail detail, const CurveUnits& unit
   text << fit.model << ": " << (fit.logarithmic ? "ln X = ln of " : "X = ") << fit.formula;
   if (!fit.source.empty()) text << "  [" << fit.source << "]";
   text << '\n';
-  for (const ParameterTable& one : parameter_tables(fit)) {
-    if (!one.heading.empty()) text << "  " << one.heading << ":\n";
-    text << parameter_table(one.estimates);
+  for (const ParameterTable& table : parameter_tables(fit)) {
+    if (!table.heading.empty()) text << "  " << table.heading << ":\n";
+    text << parameter_table(table.estimates);
   }
   text << listed_units(fit, units) << "  " << basis_of_errors(fit) << "; reduced "
        << (fit.sigma_given ? "chi2 " : "residual sum ") << number(fit.reduced_chi2, 3) << ", R2 "
@@ -325,11 +325,11 @@ std::string choice_text(const LawComparison& comparison) {
     (law.worse ? worse : open).push_back(compared_text(law));
   }
   const std::string& leading = comparison.laws[comparison.leading].model;
-  const std::string others = listed(worse);
-  if (open.empty()) return leading + " predicts held-out realizations better than " + others;
+  const std::string worse_laws = listed(worse);
+  if (open.empty()) return leading + " predicts held-out realizations better than " + worse_laws;
   std::string text = "undecided: " + listed(open) + (open.size() > 1 ? " do" : " does") +
                      " not predict held-out realizations measurably worse than " + leading;
-  if (!worse.empty()) text += "; " + others + (worse.size() > 1 ? " do" : " does");
+  if (!worse.empty()) text += "; " + worse_laws + (worse.size() > 1 ? " do" : " does");
   return text;
 }
 

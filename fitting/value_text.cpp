@@ -65,10 +65,10 @@ bool is_lopsided(double value, double low, double high, double least, double mos
 }
 
 std::string limits_text(double low, double high, int digits) {
-  const bool from = std::isfinite(low), to = std::isfinite(high);
-  if (from && to) return number_text(low, digits) + " to " + number_text(high, digits);
-  if (from) return "> " + number_text(low, digits);
-  return to ? "< " + number_text(high, digits) : "no limit";
+  const bool has_lower = std::isfinite(low), has_upper = std::isfinite(high);
+  if (has_lower && has_upper) return number_text(low, digits) + " to " + number_text(high, digits);
+  if (has_lower) return "> " + number_text(low, digits);
+  return has_upper ? "< " + number_text(high, digits) : "no limit";
 }
 
 std::string value_with_error(double value, double error, double scale) {
@@ -92,13 +92,14 @@ std::string value_with_error(double value, double error, double scale) {
 std::string value_with_limits(double value, double low, double high) {
   constexpr int most_decimals = 6, digits = 4;
   constexpr double largest_plain = 1e7;
-  const double up = high - value, down = value - low;
-  const int decimals = std::max(0, 1 - exponent_of(std::min(up, down)));
-  const bool plain = decimals <= most_decimals && std::max(std::abs(value), up) < largest_plain;
+  const double upper_width = high - value, lower_width = value - low;
+  const int decimals = std::max(0, 1 - exponent_of(std::min(upper_width, lower_width)));
+  const bool plain =
+      decimals <= most_decimals && std::max(std::abs(value), upper_width) < largest_plain;
   const auto text = [&](double number) {
     return plain ? fixed(number, decimals) : number_text(number, digits);
   };
-  return text(value) + "(+" + text(up) + "/-" + text(down) + ")";
+  return text(value) + "(+" + text(upper_width) + "/-" + text(lower_width) + ")";
 }
 
 }  // namespace jostle::inline fitting

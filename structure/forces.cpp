@@ -80,9 +80,9 @@ GranularTemperature granular_temperature(const Packing& packing, std::span<const
     if (bin.n > 0) bin.mean = (1 / bin.n) * bin.mean;
   for (std::size_t i = 0; i < velocities.size(); ++i) {
     Bin& bin = bin_of(i);
-    const Vec3 about = velocities[i] - bin.mean;
-    bin.lateral += 0.5 * (about.x * about.x + about.y * about.y);
-    bin.vertical += about.z * about.z;
+    const Vec3 centre = velocities[i] - bin.mean;
+    bin.lateral += 0.5 * (centre.x * centre.x + centre.y * centre.y);
+    bin.vertical += centre.z * centre.z;
   }
   while (!bins.empty() && bins.back().n < 2) bins.pop_back();
   GranularTemperature temperature;

@@ -25,18 +25,20 @@ std::string in_words(const Region& region, const Container& container) {
 }
 
 /// Throws where nothing can be counted in the region.
-void require_region(const MeasuredPacking& in) {
-  const Container& container = in.packing.container;
+void require_region(const MeasuredPacking& measured) {
+  const Container& container = measured.packing.container;
   const Boundary boundary(container);
-  if (boundary.periodic_z && (in.region.low < 0 || in.region.high > boundary.height)) {
-    throw std::invalid_argument("the region, " + in_words(in.region, container) +
+  if (boundary.periodic_z && (measured.region.low < 0 || measured.region.high > boundary.height)) {
+    throw std::invalid_argument("the region, " + in_words(measured.region, container) +
                                 ", must lie within the periodic box: heights 0 to " +
                                 std::to_string(boundary.height));
   }
-  const bool empty = !(in.region.high > in.region.low) || !(in.region.volume(container) > 0);
-  const auto inside = [&](const Vec3& r) { return in.region.contains(container, r); };
-  if (empty || std::ranges::none_of(in.packing.centres, inside)) {
-    throw std::invalid_argument("no sphere lies in the region, " + in_words(in.region, container) +
+  const bool empty =
+      !(measured.region.high > measured.region.low) || !(measured.region.volume(container) > 0);
+  const auto inside = [&](const Vec3& r) { return measured.region.contains(container, r); };
+  if (empty || std::ranges::none_of(measured.packing.centres, inside)) {
+    throw std::invalid_argument("no sphere lies in the region, " +
+                                in_words(measured.region, container) +
                                 ": the bed may be too low for it; choose another \"region\"");
   }
 }
@@ -49,15 +51,15 @@ constexpr bool takes_sizes =
     std::is_same_v<Settings, PairsSettings> || std::is_same_v<Settings, VoronoiSettings>;
 
 template <class Settings>
-void add_part(const char* name, MeasuredPacking& in, const std::optional<Settings>& settings,
+void add_part(const char* name, MeasuredPacking& measured, const std::optional<Settings>& settings,
               bool needs_region, std::vector<Measurement>& all) {
   if (!settings) return;
   Measurement measurement{.part = name};
   try {
     if (!takes_sizes<Settings>)
-      require_equal_spheres(in.packing, ("measures of " + std::string(name)).c_str());
-    if (needs_region) require_region(in);
-    measurement = measure_part(in, *settings);
+      require_equal_spheres(measured.packing, ("measures of " + std::string(name)).c_str());
+    if (needs_region) require_region(measured);
+    measurement = measure_part(measured, *settings);
     measurement.part = name;
   } catch (const std::invalid_argument& refusal) {
     measurement.refused = refusal.what();
@@ -97,7 +99,7 @@ Region bulk_of(const Packing& packing) {
 std::vector<std::string> parts_of_equal_spheres(const StructureSettings& settings) {
   std::vector<std::string> names;
   const auto look_at = [&]<class Settings>(const std::optional<Settings>& part) {
-    if (part && !takes_sizes<Settings>) names.emplace_back(Settings::about.name);
+    if (part && !takes_sizes<Settings>) names.emplace_back(Settings::description.name);
   };
   std::apply(
       [&](const auto& /*region*/, const auto&... part) { (look_at(settings.*part.member), ...); },
@@ -108,27 +110,27 @@ std::vector<std::string> parts_of_equal_spheres(const StructureSettings& setting
 std::vector<Measurement> measure(const Packing& packing, const StructureSettings& settings,
                                  StreamKey points) {
   require_diameters(packing);
-  MeasuredPacking in{
+  MeasuredPacking measured{
       .packing = packing, .region = settings.region.value_or(bulk_of(packing)), .points = points};
   std::vector<Measurement> all;
-  add_part("profile", in, settings.profile, false, all);
-  add_part("sides", in, settings.sides, false, all);
-  add_part("layers", in, settings.layers, false, all);
-  add_part("coordination", in, settings.coordination, true, all);
-  add_part("pair_correlation", in, settings.pair_correlation, false, all);
-  add_part("order", in, settings.order, true, all);
-  add_part("gaps", in, settings.gaps, true, all);
-  add_part("structure_factor", in, settings.structure_factor, true, all);
-  add_part("voronoi", in, settings.voronoi, true, all);
-  add_part("clusters", in, settings.clusters, true, all);
-  add_part("pores", in, settings.pores, true, all);
-  add_part("void_probability", in, settings.void_probability, true, all);
-  add_part("holes", in, settings.holes, true, all);
+  add_part("profile", measured, settings.profile, false, all);
+  add_part("sides", measured, settings.sides, false, all);
+  add_part("layers", measured, settings.layers, false, all);
+  add_part("coordination", measured, settings.coordination, true, all);
+  add_part("pair_correlation", measured, settings.pair_correlation, false, all);
+  add_part("order", measured, settings.order, true, all);
+  add_part("gaps", measured, settings.gaps, true, all);
+  add_part("structure_factor", measured, settings.structure_factor, true, all);
+  add_part("voronoi", measured, settings.voronoi, true, all);
+  add_part("clusters", measured, settings.clusters, true, all);
+  add_part("pores", measured, settings.pores, true, all);
+  add_part("void_probability", measured, settings.void_probability, true, all);
+  add_part("holes", measured, settings.holes, true, all);
   return all;
 }
 
-KindPairs::KindPairs(const MeasuredPacking& in) : in_(in) {
-  const Sizes& sizes = *in.packing.sizes;
+KindPairs::KindPairs(const MeasuredPacking& measured) : measured_(measured) {
+  const Sizes& sizes = *measured.packing.sizes;
   const std::size_t n = sizes.kinds().size();
   in_region_.assign(n * n, 0.0);
   all_ = in_region_;
@@ -136,22 +138,22 @@ KindPairs::KindPairs(const MeasuredPacking& in) : in_(in) {
   region_spheres_ = spheres_;
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     spheres_[sizes.kind(i)] += 1;
-    if (in.in_region(i)) region_spheres_[sizes.kind(i)] += 1;
+    if (measured.in_region(i)) region_spheres_[sizes.kind(i)] += 1;
   }
 }
 
 void KindPairs::add(std::size_t i, std::size_t j) {
-  const Sizes& sizes = *in_.packing.sizes;
+  const Sizes& sizes = *measured_.packing.sizes;
   const std::size_t pair = sizes.kind(i) * spheres_.size() + sizes.kind(j);
   all_[pair] += 1;
-  if (in_.in_region(i)) in_region_[pair] += 1;
+  if (measured_.in_region(i)) in_region_[pair] += 1;
 }
 
 void KindPairs::write(std::string_view of_region, std::string_view of_all,
                       std::string_view region_meaning, std::string_view all_meaning,
-                      Measurement& out) const {
+                      Measurement& measurement) const {
   std::vector<std::string> kinds, pairs;
-  for (const SphereKind& kind : in_.packing.sizes->kinds()) kinds.push_back(kind.name);
+  for (const SphereKind& kind : measured_.packing.sizes->kinds()) kinds.push_back(kind.name);
   std::vector<double> region, all;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     for (std::size_t j = 0; j < kinds.size(); ++j) {
@@ -161,20 +163,21 @@ void KindPairs::write(std::string_view of_region, std::string_view of_all,
       all.push_back(all_[pair] / spheres_[i]);
     }
   }
-  out.places.push_back({"pair", std::move(pairs), "1", "kind of the sphere, kind of its partners"});
-  out.places.push_back({"kind", std::move(kinds), "1", "kind of spheres"});
-  out.quantities.push_back({.name = std::string(of_region),
-                            .places = "pair",
-                            .values = std::move(region),
-                            .long_name = region_meaning});
-  out.quantities.push_back({.name = std::string(of_all),
-                            .places = "pair",
-                            .values = std::move(all),
-                            .long_name = all_meaning});
-  out.quantities.push_back({.name = "spheres_of_kind",
-                            .places = "kind",
-                            .values = spheres_,
-                            .long_name = "spheres of a kind, of the whole packing"});
+  measurement.places.push_back(
+      {"pair", std::move(pairs), "1", "kind of the sphere, kind of its partners"});
+  measurement.places.push_back({"kind", std::move(kinds), "1", "kind of spheres"});
+  measurement.quantities.push_back({.name = std::string(of_region),
+                                    .places = "pair",
+                                    .values = std::move(region),
+                                    .long_name = region_meaning});
+  measurement.quantities.push_back({.name = std::string(of_all),
+                                    .places = "pair",
+                                    .values = std::move(all),
+                                    .long_name = all_meaning});
+  measurement.quantities.push_back({.name = "spheres_of_kind",
+                                    .places = "kind",
+                                    .values = spheres_,
+                                    .long_name = "spheres of a kind, of the whole packing"});
 }
 
 double fraction_of(const Packing& packing, const Region& region) {

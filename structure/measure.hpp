@@ -19,7 +19,7 @@
 namespace jostle::inline structure {
 
 inline constexpr Range bin_width_range =
-    between(0.001, 10);  // bin width range of heights and distances, diameters
+    closed_range(0.001, 10);  // bin width range of heights and distances, diameters
 
 /// Packing fraction against height, and how it thins out upwards.
 struct ProfileSettings {
@@ -29,12 +29,13 @@ struct ProfileSettings {
   std::optional<HeightWindow> gradient = std::nullopt;  // absent: as gradient_range() has it
   bool operator==(const ProfileSettings&) const = default;
 
-  static constexpr About about{"profile", "Packing fraction against height, its gradient, eq. 7"};
+  static constexpr Description description{"profile",
+                                           "Packing fraction against height, its gradient, eq. 7"};
   static constexpr auto fields() {
     return std::tuple{
         field("bin_width", &ProfileSettings::bin_width, Number{bin_width_range, "diameters"},
               "Width of a bin"),
-        field("smoothing", &ProfileSettings::smoothing, Number{between(0, 10)},
+        field("smoothing", &ProfileSettings::smoothing, Number{closed_range(0, 10)},
               "Boxcar of the smoothed profile and the gradient, diameters; 0 for none"),
         field("gradient", &ProfileSettings::gradient, height_bounds,
               "Heights of the gradient; absent: 2.5 to 11 between walls, to 13 with periodic "
@@ -49,15 +50,16 @@ struct SidesSettings {
   double reach = 7 * sphere_radius;                    // depth of "lateral" from a wall
   bool operator==(const SidesSettings&) const = default;
 
-  static constexpr About about{"sides",
-                               "Packing fraction from side to side, from the walls, from the axis"};
+  static constexpr Description description{
+      "sides", "Packing fraction from side to side, from the walls, from the axis"};
   static constexpr auto fields() {
-    return std::tuple{field("bin_width", &SidesSettings::bin_width,
-                            Number{bin_width_range, "diameters"}, "Width of a bin"),
-                      field("reach", &SidesSettings::reach, Number{above(0, 1e6), "diameters"},
-                            "Depth of the lateral region, from a wall"),
-                      field("heights", &SidesSettings::heights, height_bounds,
-                            "Low and high; absent: 2 to 0.8 of 2<Z>")};
+    return std::tuple{
+        field("bin_width", &SidesSettings::bin_width, Number{bin_width_range, "diameters"},
+              "Width of a bin"),
+        field("reach", &SidesSettings::reach, Number{left_open_range(0, 1e6), "diameters"},
+              "Depth of the lateral region, from a wall"),
+        field("heights", &SidesSettings::heights, height_bounds,
+              "Low and high; absent: 2 to 0.8 of 2<Z>")};
   }
 };
 
@@ -67,7 +69,7 @@ struct LayersSettings {
   LayerRule rule{};
   bool operator==(const LayersSettings&) const = default;
 
-  static constexpr About about{"layers", "n(z) and the layers grown from the floor"};
+  static constexpr Description description{"layers", "n(z) and the layers grown from the floor"};
   static constexpr auto fields() {
     return std::tuple{field("bin_width", &LayersSettings::bin_width,
                             Number{bin_width_range, "diameters"}, "Width of bins of n(z)"),
@@ -80,14 +82,15 @@ struct CoordinationSettings {
   double largest_cut = 1.5, step = 0.01;
   bool operator==(const CoordinationSettings&) const = default;
 
-  static constexpr About about{"coordination", "Neighbours within a cut, and against the cut"};
+  static constexpr Description description{"coordination",
+                                           "Neighbours within a cut, and against the cut"};
   static constexpr auto fields() {
     return std::tuple{
-        field("cut", &CoordinationSettings::cut, Number{between(1, 3), "diameters"},
+        field("cut", &CoordinationSettings::cut, Number{closed_range(1, 3), "diameters"},
               "Distance of the centres of neighbours, at most"),
-        field("largest_cut", &CoordinationSettings::largest_cut, Number{between(1, 3), "diameters"},
-              "Range of the curve above 1"),
-        field("step", &CoordinationSettings::step, Number{between(0.001, 1), "diameters"},
+        field("largest_cut", &CoordinationSettings::largest_cut,
+              Number{closed_range(1, 3), "diameters"}, "Range of the curve above 1"),
+        field("step", &CoordinationSettings::step, Number{closed_range(0.001, 1), "diameters"},
               "Step of the curve of neighbours against the cut")};
   }
 };
@@ -97,11 +100,12 @@ struct PairsSettings {
   double bin_width = 0.02;
   bool operator==(const PairsSettings&) const = default;
 
-  static constexpr About about{"pair_correlation", "g(r), corrected for floor, surface and sides"};
+  static constexpr Description description{"pair_correlation",
+                                           "g(r), corrected for floor, surface and sides"};
   static constexpr auto fields() {
     return std::tuple{field("bin_width", &PairsSettings::bin_width,
-                            Number{between(0.001, 1), "diameters"}, "Width of a bin"),
-                      field("r_max", &PairsSettings::r_max, Number{between(1, 20)},
+                            Number{closed_range(0.001, 1), "diameters"}, "Width of a bin"),
+                      field("r_max", &PairsSettings::r_max, Number{closed_range(1, 20)},
                             "Diameters. Default: 4, at most half a period")};
   }
 };
@@ -111,10 +115,11 @@ struct OrderSettings {
   double bin_width = 1;  // bin width of heights
   bool operator==(const OrderSettings&) const = default;
 
-  static constexpr About about{"order", "q4, q6, w6; fcc, hcp and disordered spheres, by height"};
+  static constexpr Description description{
+      "order", "q4, q6, w6; fcc, hcp and disordered spheres, by height"};
   static constexpr auto fields() {
     return std::tuple{field("bin_width", &OrderSettings::bin_width,
-                            Number{between(0.1, 1000), "diameters"}, "Bin width of heights")};
+                            Number{closed_range(0.1, 1000), "diameters"}, "Bin width of heights")};
   }
 };
 
@@ -127,20 +132,22 @@ struct GapsSettings {
   HeightWindow window{0.01, 0.2};  // gaps whose exponent is sought
   bool operator==(const GapsSettings&) const = default;
 
-  static constexpr About about{"gaps",
-                               "Gaps between neighbours and their exponent, contacts, rattlers, "
-                               "against the gap that counts as a contact"};
+  static constexpr Description description{
+      "gaps",
+      "Gaps between neighbours and their exponent, contacts, rattlers, "
+      "against the gap that counts as a contact"};
   static constexpr auto fields() {
     return std::tuple{
-        field("largest", &GapsSettings::largest, Number{between(0.01, 2), "diameters"},
+        field("largest", &GapsSettings::largest, Number{closed_range(0.01, 2), "diameters"},
               "Gap that is counted"),
-        field("tolerance", &GapsSettings::tolerance, Number{between(0, 0.2)},
+        field("tolerance", &GapsSettings::tolerance, Number{closed_range(0, 0.2)},
               "Gap up to which spheres touch, diameters: of the single values"),
         field("least_contacts", &GapsSettings::least_contacts, Whole{1, 12},
               "Contacts of a sphere that is not a rattler, at least. Default: 3 in beds, which "
               "have weight; "
               "4 in a fully periodic box, which has none"),
-        field("window", &GapsSettings::window, Bounds{above(0, 1e6), between(0, 1e6)},
+        field("window", &GapsSettings::window,
+              Bounds{left_open_range(0, 1e6), closed_range(0, 1e6)},
               "Gaps whose exponent is sought, diameters; low below high, and above 0, which has no "
               "logarithm")};
   }
@@ -152,15 +159,16 @@ struct VoronoiSettings {
   bool cut_cells = false;    // true if cells that floor, sides or lid cut are counted too
   bool operator==(const VoronoiSettings&) const = default;
 
-  static constexpr About about{"voronoi",
-                               "Faces, volumes and free volumes of cells, local packing fractions"};
+  static constexpr Description description{
+      "voronoi", "Faces, volumes and free volumes of cells, local packing fractions"};
   static constexpr auto fields() {
-    return std::tuple{field("least_area", &VoronoiSettings::least_area, Number{between(0, 0.1)},
-                            "Least area of a counted face, in surfaces of its cell"),
-                      field("bin_width", &VoronoiSettings::bin_width, Number{between(0.001, 1)},
-                            "Width of bins of free volumes, in volumes of a sphere"),
-                      field("cut_cells", &VoronoiSettings::cut_cells, Flag{},
-                            "Cells that are cut by floor, sides or lid are counted, too")};
+    return std::tuple{
+        field("least_area", &VoronoiSettings::least_area, Number{closed_range(0, 0.1)},
+              "Least area of a counted face, in surfaces of its cell"),
+        field("bin_width", &VoronoiSettings::bin_width, Number{closed_range(0.001, 1)},
+              "Width of bins of free volumes, in volumes of a sphere"),
+        field("cut_cells", &VoronoiSettings::cut_cells, Flag{},
+              "Cells that are cut by floor, sides or lid are counted, too")};
   }
 };
 
@@ -169,8 +177,8 @@ struct ClustersSettings {
   std::uint64_t largest = 64;  // cells
   bool operator==(const ClustersSettings&) const = default;
 
-  static constexpr About about{"clusters",
-                               "Volumes of clusters of Voronoi cells against their number"};
+  static constexpr Description description{
+      "clusters", "Volumes of clusters of Voronoi cells against their number"};
   static constexpr auto fields() {
     return std::tuple{field("largest", &ClustersSettings::largest, Whole{1, 10'000},
                             "Cells of the largest cluster")};
@@ -184,18 +192,19 @@ struct PoresSettings {
   double tail_from = 0.15;                 // v at which the exponential tail begins
   bool operator==(const PoresSettings&) const = default;
 
-  static constexpr About about{"pores",
-                               "Sizes of pores, sites of close packing, the exponential tail"};
+  static constexpr Description description{
+      "pores", "Sizes of pores, sites of close packing, the exponential tail"};
   static constexpr auto fields() {
     return std::tuple{
-        field("bin_width", &PoresSettings::bin_width, Number{between(0.001, 0.5)},
+        field("bin_width", &PoresSettings::bin_width, Number{closed_range(0.001, 0.5)},
               "Bin width of xi"),
-        field("largest", &PoresSettings::largest, Number{between(0.5, 10)}, "xi of the last bin"),
-        field("merge", &PoresSettings::merge, Number{between(0, 0.1), "diameters"},
+        field("largest", &PoresSettings::largest, Number{closed_range(0.5, 10)},
+              "xi of the last bin"),
+        field("merge", &PoresSettings::merge, Number{closed_range(0, 0.1), "diameters"},
               "Vertices so close are one pore"),
-        field("tolerance", &PoresSettings::tolerance, Number{between(0, 0.1)},
+        field("tolerance", &PoresSettings::tolerance, Number{closed_range(0, 0.1)},
               "Tolerance of tetrahedral and octahedral sites, in xi"),
-        field("tail_from", &PoresSettings::tail_from, Number{between(0, 100)},
+        field("tail_from", &PoresSettings::tail_from, Number{closed_range(0, 100)},
               "v at which the tail begins")};
   }
 };
@@ -206,11 +215,11 @@ struct VoidSettings {
   std::uint64_t points = 100'000;   // a packing
   bool operator==(const VoidSettings&) const = default;
 
-  static constexpr About about{"void_probability", "P0(sigma) beside Gotoh's"};
+  static constexpr Description description{"void_probability", "P0(sigma) beside Gotoh's"};
   static constexpr auto fields() {
     return std::tuple{
-        field("largest", &VoidSettings::largest, Number{between(0.1, 5)}, "sigma"),
-        field("step", &VoidSettings::step, Number{between(0.001, 1)}, "Step of sigma"),
+        field("largest", &VoidSettings::largest, Number{closed_range(0.1, 5)}, "sigma"),
+        field("step", &VoidSettings::step, Number{closed_range(0.001, 1)}, "Step of sigma"),
         field("points", &VoidSettings::points, Whole{100, 1'000'000'000},
               "Random points per packing")};
   }
@@ -220,14 +229,14 @@ struct HolesSettings {
   BondLengths bonds{};
   bool operator==(const HolesSettings&) const = default;
 
-  static constexpr About about{"holes", "Bernal's canonical holes"};
+  static constexpr Description description{"holes", "Bernal's canonical holes"};
   static constexpr auto fields() { return std::tuple{inlined(&HolesSettings::bonds)}; }
 };
 
 /// The field of a part, which has the part's name.
 template <class Part, class Settings>
 constexpr auto measured(std::optional<Settings> Part::*member) {
-  return field(Settings::about.name, member, Object<Settings>{}, Settings::about.text);
+  return field(Settings::description.name, member, Object<Settings>{}, Settings::description.text);
 }
 
 /// The measured parts: those that have settings.

@@ -16,11 +16,11 @@ constexpr std::uint64_t least_clusters = 10;
 
 }  // namespace
 
-Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) {
-  const VoronoiCells& cells = in.voronoi();
+Measurement measure_part(MeasuredPacking& measured, const ClustersSettings& settings) {
+  const VoronoiCells& cells = measured.voronoi();
   const ClusterVolumes found =
-      cluster_volumes(in.packing, cells, static_cast<std::uint32_t>(settings.largest),
-                      [&](std::uint32_t i) { return in.in_region(i); });
+      cluster_volumes(measured.packing, cells, static_cast<std::uint32_t>(settings.largest),
+                      [&](std::uint32_t i) { return measured.in_region(i); });
   const std::uint64_t whole = found.clusters.empty() ? 0 : found.clusters.front();
   if (whole < 2) {
     throw std::invalid_argument("whole cells in the region: " + std::to_string(whole) +
@@ -41,9 +41,9 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
     chi.push_back(per_cell.back() / (found.mean[k] / n.back() - 1 - least_free_volume));
     clusters.push_back(static_cast<double>(found.clusters[k]));
   }
-  Measurement out;
-  out.places = {{"cells", n, "1", "cells of a cluster"}};
-  out.quantities = {
+  Measurement measurement;
+  measurement.places = {{"cells", n, "1", "cells of a cluster"}};
+  measurement.quantities = {
       {.name = "variance",
        .places = "cells",
        .values = per_cell,
@@ -86,7 +86,7 @@ Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings) 
        .values = {found.mean.front()},
        .units = "sphere volumes",
        .long_name = "volume of a whole cell"}};
-  return out;
+  return measurement;
 }
 
 }  // namespace jostle::inline structure

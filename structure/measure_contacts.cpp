@@ -29,15 +29,15 @@ std::vector<double> gap_grid(double largest) {
 struct Contacts {
   double all = 0, rattlers = 0, without_rattlers = 0;
 };
-Contacts contacts_within(const MeasuredPacking& in, const NeighbourTable& near, double tolerance,
-                         unsigned least) {
-  const Backbone every = backbone(in.packing, near, tolerance, 0);
-  const Backbone held = backbone(in.packing, near, tolerance, least);
+Contacts contacts_within(const MeasuredPacking& measured, const NeighbourTable& near,
+                         double tolerance, unsigned least) {
+  const Backbone every = backbone(measured.packing, near, tolerance, 0);
+  const Backbone held = backbone(measured.packing, near, tolerance, least);
   double spheres = 0, all = 0, rattlers = 0, contacts = 0;
   bool has_backbone = false;
   for (std::size_t i = 0; i < near.size(); ++i) {
     has_backbone = has_backbone || !held.rattler[i];
-    if (!in.in_region(i)) continue;
+    if (!measured.in_region(i)) continue;
     spheres += 1;
     all += every.contacts[i];
     rattlers += held.rattler[i] ? 1 : 0;
@@ -57,22 +57,23 @@ struct Gaps {
 
 /// Calls add(i, j, gap, weight) for every neighbour j of a sphere i of the region.
 template <class Add>
-void for_each_gap(const MeasuredPacking& in, const NeighbourTable& near, Add&& add) {
-  const ShellPart part(in.packing.container);
+void for_each_gap(const MeasuredPacking& measured, const NeighbourTable& near, Add&& add) {
+  const ShellPart part(measured.packing.container);
   for (std::size_t i = 0; i < near.size(); ++i) {
-    if (!in.in_region(i)) continue;
-    for (const Neighbour& neighbour : near.of(i)) {
+    if (!measured.in_region(i)) continue;
+    for (const Neighbour& neighbour : near.neighbours_of(i)) {
       const double scaled = std::sqrt(neighbour.distance_squared);
-      const double partner = in.packing.radius(neighbour.sphere);
-      const double distance = scaled * (in.packing.radius(i) + partner);
-      add(i, neighbour.sphere, scaled - 1, 1 / part(in.packing.centres[i], distance, partner));
+      const double partner = measured.packing.radius(neighbour.sphere);
+      const double distance = scaled * (measured.packing.radius(i) + partner);
+      add(i, neighbour.sphere, scaled - 1,
+          1 / part(measured.packing.centres[i], distance, partner));
     }
   }
 }
 
-Gaps all_gaps(const MeasuredPacking& in, const NeighbourTable& near) {
+Gaps all_gaps(const MeasuredPacking& measured, const NeighbourTable& near) {
   Gaps gaps;
-  for_each_gap(in, near, [&](std::size_t, std::size_t, double gap, double weight) {
+  for_each_gap(measured, near, [&](std::size_t, std::size_t, double gap, double weight) {
     gaps.sizes.push_back(gap);
     gaps.weights.push_back(weight);
   });
@@ -80,12 +81,12 @@ Gaps all_gaps(const MeasuredPacking& in, const NeighbourTable& near) {
 }
 
 /// Exponents of the gaps of each two kinds, in the order of KindPairs.
-void add_exponents_of_pairs(const MeasuredPacking& in, const NeighbourTable& near,
-                            HeightWindow window, Measurement& out) {
-  const Sizes& sizes = *in.packing.sizes;
+void add_exponents_of_pairs(const MeasuredPacking& measured, const NeighbourTable& near,
+                            HeightWindow window, Measurement& measurement) {
+  const Sizes& sizes = *measured.packing.sizes;
   const std::size_t n_kinds = sizes.kinds().size();
   std::vector<Gaps> of_pair(n_kinds * n_kinds);
-  for_each_gap(in, near, [&](std::size_t i, std::size_t j, double gap, double weight) {
+  for_each_gap(measured, near, [&](std::size_t i, std::size_t j, double gap, double weight) {
     Gaps& gaps = of_pair[sizes.kind(i) * n_kinds + sizes.kind(j)];
     gaps.sizes.push_back(gap);
     gaps.weights.push_back(weight);
@@ -96,36 +97,36 @@ void add_exponents_of_pairs(const MeasuredPacking& in, const NeighbourTable& nea
     counts.push_back(static_cast<double>(std::ranges::count_if(
         gaps.sizes, [&](double gap) { return gap >= window.low && gap <= window.high; })));
   }
-  out.quantities.push_back(
+  measurement.quantities.push_back(
       {.name = "gap_exponent_of_pair",
        .places = "pair",
        .values = std::move(exponents),
        .long_name = "gamma of g_ij(1 + h) as h^-gamma, gaps in the window from spheres of the "
                     "first kind to those of the second",
        .with_packings = true});
-  out.quantities.push_back({.name = "gaps_of_pair",
-                            .places = "pair",
-                            .values = std::move(counts),
-                            .long_name = "gaps in the window, of all packings",
-                            .pooling = Pooling::sum});
+  measurement.quantities.push_back({.name = "gaps_of_pair",
+                                    .places = "pair",
+                                    .values = std::move(counts),
+                                    .long_name = "gaps in the window, of all packings",
+                                    .pooling = Pooling::sum});
 }
 
 /// Contacts with spheres within the tolerance by kinds, and rattlers by kind.
-void add_kinds(const MeasuredPacking& in, const NeighbourTable& near, double tolerance,
-               unsigned least, Measurement& out) {
-  const Backbone held = backbone(in.packing, near, tolerance, least);
-  KindPairs pairs(in);
-  std::vector<double> loose(in.packing.sizes->kinds().size(), 0.0), spheres(loose);
+void add_kinds(const MeasuredPacking& measured, const NeighbourTable& near, double tolerance,
+               unsigned least, Measurement& measurement) {
+  const Backbone held = backbone(measured.packing, near, tolerance, least);
+  KindPairs pairs(measured);
+  std::vector<double> loose(measured.packing.sizes->kinds().size(), 0.0), spheres(loose);
   double all_loose = 0, all = 0;
   for (std::size_t i = 0; i < near.size(); ++i) {
-    for (const Neighbour& neighbour : near.of(i)) {
+    for (const Neighbour& neighbour : near.neighbours_of(i)) {
       if (neighbour.distance_squared <= (1 + tolerance) * (1 + tolerance))
         pairs.add(i, neighbour.sphere);
     }
-    if (!in.in_region(i)) continue;
-    spheres[in.packing.sizes->kind(i)] += 1;
+    if (!measured.in_region(i)) continue;
+    spheres[measured.packing.sizes->kind(i)] += 1;
     all += 1;
-    loose[in.packing.sizes->kind(i)] += held.rattler[i] ? 1 : 0;
+    loose[measured.packing.sizes->kind(i)] += held.rattler[i] ? 1 : 0;
     all_loose += held.rattler[i] ? 1 : 0;
   }
   for (std::size_t k = 0; k < loose.size(); ++k)
@@ -135,13 +136,14 @@ void add_kinds(const MeasuredPacking& in, const NeighbourTable& near, double tol
               "region",
               "mean number of spheres of the second kind that touch one of the first, over all "
               "spheres",
-              out);
-  out.quantities.push_back({.name = "rattlers_of_kind",
-                            .places = "kind",
-                            .values = std::move(loose),
-                            .long_name = "fraction of rattlers of a kind, of packings with a "
-                                         "backbone",
-                            .with_packings = true});
+              measurement);
+  measurement.quantities.push_back({.name = "rattlers_of_kind",
+                                    .places = "kind",
+                                    .values = std::move(loose),
+                                    .long_name =
+                                        "fraction of rattlers of a kind, of packings with a "
+                                        "backbone",
+                                    .with_packings = true});
 }
 
 std::string tolerance_note(double tolerance, const char* unit) {
@@ -155,28 +157,28 @@ std::string tolerance_note(double tolerance, const char* unit) {
 
 }  // namespace
 
-Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
+Measurement measure_part(MeasuredPacking& measured, const GapsSettings& settings) {
   const std::vector<double> grid = gap_grid(settings.largest);
   const double reach = std::max({settings.largest, settings.tolerance, settings.window.high});
-  const NeighbourTable near = neighbours_within_contacts(in.packing, 1 + reach);
+  const NeighbourTable near = neighbours_within_contacts(measured.packing, 1 + reach);
   const auto least = static_cast<unsigned>(
-      settings.least_contacts.value_or(least_contacts_of(in.packing.container)));
-  const Gaps gaps = all_gaps(in, near);
-  std::vector<double> all, rattlers, without, exponents;
+      settings.least_contacts.value_or(least_contacts_of(measured.packing.container)));
+  const Gaps gaps = all_gaps(measured, near);
+  std::vector<double> all, rattlers, without_rattlers, exponents;
   for (const double gap : grid) {
-    const Contacts found = contacts_within(in, near, gap, least);
+    const Contacts found = contacts_within(measured, near, gap, least);
     all.push_back(found.all);
     rattlers.push_back(found.rattlers);
-    without.push_back(found.without_rattlers);
+    without_rattlers.push_back(found.without_rattlers);
     exponents.push_back(gap > 0 && gap < 0.7 * settings.window.high
                             ? gaps.exponent(gap, settings.window.high)
                             : std::nan(""));
   }
-  const Contacts found = contacts_within(in, near, settings.tolerance, least);
-  Measurement out;
-  out.places = {{"gap", grid, in.packing.sizes ? "sum of radii" : "diameter",
-                 "distance of surfaces up to which spheres touch"}};
-  out.quantities = {
+  const Contacts found = contacts_within(measured, near, settings.tolerance, least);
+  Measurement measurement;
+  measurement.places = {{"gap", grid, measured.packing.sizes ? "sum of radii" : "diameter",
+                         "distance of surfaces up to which spheres touch"}};
+  measurement.quantities = {
       {.name = "z_of_gap",
        .places = "gap",
        .values = all,
@@ -191,7 +193,7 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
        .with_packings = true},
       {.name = "backbone_z_of_gap",
        .places = "gap",
-       .values = without,
+       .values = without_rattlers,
        .long_name = "mean number of contacts without rattlers, of packings with a backbone",
        .source = donev,
        .with_packings = true},
@@ -218,49 +220,50 @@ Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings) {
                     "isostatic without friction",
        .source = donev,
        .with_packings = true}};
-  out.notes = {{"least_contacts", std::to_string(least) + " of a sphere that is no rattler"},
-               {"tolerance", tolerance_note(settings.tolerance,
-                                            in.packing.sizes ? " of the sum of radii" : " d")}};
-  if (in.packing.sizes) {
-    add_kinds(in, near, settings.tolerance, least, out);
-    add_exponents_of_pairs(in, near, settings.window, out);
+  measurement.notes = {
+      {"least_contacts", std::to_string(least) + " of a sphere that is no rattler"},
+      {"tolerance",
+       tolerance_note(settings.tolerance, measured.packing.sizes ? " of the sum of radii" : " d")}};
+  if (measured.packing.sizes) {
+    add_kinds(measured, near, settings.tolerance, least, measurement);
+    add_exponents_of_pairs(measured, near, settings.window, measurement);
   }
-  return out;
+  return measurement;
 }
 
-Measurement measure_part(MeasuredPacking& in, const StructureFactorSettings& settings) {
-  const StructureFactor found = structure_factor(in.packing, settings, in.region);
+Measurement measure_part(MeasuredPacking& measured, const StructureFactorSettings& settings) {
+  const StructureFactor found = structure_factor(measured.packing, settings, measured.region);
   std::vector<double> modes(found.modes.begin(), found.modes.end());
-  Measurement out;
-  out.places = {{"k", found.k, "1/diameter", "wave number, middle of a bin"}};
-  out.quantities = {{.name = "s",
-                     .places = "k",
-                     .values = found.s,
-                     .long_name = "structure factor S(k)",
-                     .source = "Hansen & McDonald, Theory of Simple Liquids, sec. 4.1"},
-                    {.name = "modes",
-                     .places = "k",
-                     .values = modes,
-                     .long_name = "wave vectors averaged",
-                     .with_error = false},
-                    {.name = "s_0_of_squares",
-                     .values = {found.s_0_of_squares},
-                     .long_name = "S at k = 0 by a straight line in k^2"},
-                    {.name = "s_0_of_line",
-                     .values = {found.s_0_of_line},
-                     .long_name = "S at k = 0 by a straight line in k",
-                     .source = "Donev, Stillinger & Torquato 2005, "
-                               "doi:10.1103/PhysRevLett.95.090604"},
-                    {.name = "fitted_from",
-                     .values = {found.fitted_from},
-                     .units = "1/diameter",
-                     .long_name = "least k of the wave vectors that these lines go through",
-                     .with_error = false},
-                    {.name = "fitted_modes",
-                     .values = {static_cast<double>(found.fitted_modes)},
-                     .long_name = "how many wave vectors they are",
-                     .with_error = false}};
-  return out;
+  Measurement measurement;
+  measurement.places = {{"k", found.k, "1/diameter", "wave number, middle of a bin"}};
+  measurement.quantities = {{.name = "s",
+                             .places = "k",
+                             .values = found.s,
+                             .long_name = "structure factor S(k)",
+                             .source = "Hansen & McDonald, Theory of Simple Liquids, sec. 4.1"},
+                            {.name = "modes",
+                             .places = "k",
+                             .values = modes,
+                             .long_name = "wave vectors averaged",
+                             .with_error = false},
+                            {.name = "s_0_of_squares",
+                             .values = {found.s_0_of_squares},
+                             .long_name = "S at k = 0 by a straight line in k^2"},
+                            {.name = "s_0_of_line",
+                             .values = {found.s_0_of_line},
+                             .long_name = "S at k = 0 by a straight line in k",
+                             .source = "Donev, Stillinger & Torquato 2005, "
+                                       "doi:10.1103/PhysRevLett.95.090604"},
+                            {.name = "fitted_from",
+                             .values = {found.fitted_from},
+                             .units = "1/diameter",
+                             .long_name = "least k of the wave vectors that these lines go through",
+                             .with_error = false},
+                            {.name = "fitted_modes",
+                             .values = {static_cast<double>(found.fitted_modes)},
+                             .long_name = "how many wave vectors they are",
+                             .with_error = false}};
+  return measurement;
 }
 
 }  // namespace jostle::inline structure

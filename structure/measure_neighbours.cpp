@@ -62,16 +62,16 @@ constexpr OrderColumn order_columns[] = {
 constexpr std::size_t n_order_columns = std::size(order_columns), first_bond_column = 3;
 
 /// Neighbours of a mixture within a cut, by kinds.
-void add_kinds(const MeasuredPacking& in, double cut, Measurement& out) {
-  const NeighbourTable near = neighbours_within_contacts(in.packing, cut);
-  KindPairs pairs(in);
+void add_kinds(const MeasuredPacking& measured, double cut, Measurement& measurement) {
+  const NeighbourTable near = neighbours_within_contacts(measured.packing, cut);
+  KindPairs pairs(measured);
   for (std::size_t i = 0; i < near.size(); ++i) {
-    for (const Neighbour& neighbour : near.of(i)) pairs.add(i, neighbour.sphere);
+    for (const Neighbour& neighbour : near.neighbours_of(i)) pairs.add(i, neighbour.sphere);
   }
   pairs.write("n_c_of_pair", "n_c_of_pair_all",
               "mean number of neighbours of the second kind of one of the first, over the region",
               "mean number of neighbours of the second kind of one of the first, over all spheres",
-              out);
+              measurement);
 }
 
 /// A word of a quantity's name: letters, digits and underscores.
@@ -86,18 +86,18 @@ std::string word_of(const std::string& kind) {
   return word;
 }
 
-Measurement measured_partial_pairs(const MeasuredPacking& in, const PairsSettings& settings) {
-  const double x_max = settings.r_max.value_or(widest_partial_pairs(in.packing));
+Measurement measured_partial_pairs(const MeasuredPacking& measured, const PairsSettings& settings) {
+  const double x_max = settings.r_max.value_or(widest_partial_pairs(measured.packing));
   const std::vector<PartialCorrelation> all =
-      partial_correlations(in.packing, {.r_max = x_max, .bin_width = settings.bin_width});
-  Measurement out;
-  out.places = {{"r", all.front().x, "sum of radii",
-                 "distance of centres over the sum of the two radii, middle of a bin"}};
-  const std::vector<SphereKind>& kinds = in.packing.sizes->kinds();
+      partial_correlations(measured.packing, {.r_max = x_max, .bin_width = settings.bin_width});
+  Measurement measurement;
+  measurement.places = {{"r", all.front().x, "sum of radii",
+                         "distance of centres over the sum of the two radii, middle of a bin"}};
+  const std::vector<SphereKind>& kinds = measured.packing.sizes->kinds();
   for (const PartialCorrelation& pairs : all) {
     const std::string name =
         word_of(kinds[pairs.first].name) + "_" + word_of(kinds[pairs.second].name);
-    out.quantities.push_back(
+    measurement.quantities.push_back(
         {.name = "g_" + name,
          .places = "r",
          .values = pairs.g(),
@@ -106,72 +106,75 @@ Measurement measured_partial_pairs(const MeasuredPacking& in, const PairsSetting
          .pooling = Pooling::weighted,
          .weights = pairs.expected,
          .beyond = not_a_number});
-    out.quantities.push_back(
+    measurement.quantities.push_back(
         {.name = "pairs_" + name,
          .places = "r",
          .values = std::vector<double>(pairs.counts.begin(), pairs.counts.end()),
          .long_name = "pairs of two kinds found from the central spheres, of all packings",
          .pooling = Pooling::sum});
   }
-  return out;
+  return measurement;
 }
 
 }  // namespace
 
-Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settings) {
-  const CoordinationCurve curve = coordination_curve(in.packing, cuts_up_to(settings), in.region);
-  const std::vector<unsigned> numbers = coordination_numbers(in.packing, settings.cut);
+Measurement measure_part(MeasuredPacking& measured, const CoordinationSettings& settings) {
+  const CoordinationCurve curve =
+      coordination_curve(measured.packing, cuts_up_to(settings), measured.region);
+  const std::vector<unsigned> numbers = coordination_numbers(measured.packing, settings.cut);
   std::vector<unsigned> in_region;
   double all = 0, mean = 0;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     all += numbers[i];
-    if (in.in_region(i)) in_region.push_back(numbers[i]);
+    if (measured.in_region(i)) in_region.push_back(numbers[i]);
   }
   for (const unsigned number : in_region) mean += number;
   const std::vector<double> histogram = shares(neighbour_histogram(in_region));
-  Measurement out;
-  out.places = {
-      {"cut", curve.cuts, in.packing.sizes ? "sum of radii" : "diameter",
+  Measurement measurement;
+  measurement.places = {
+      {"cut", curve.cuts, measured.packing.sizes ? "sum of radii" : "diameter",
        "centres at most so far away count"},
       {"neighbours", whole_numbers(histogram.size()), "1", "other centres within the first cut"}};
-  out.quantities = {{.name = "n_c_of_cut",
-                     .places = "cut",
-                     .values = curve.coordination,
-                     .long_name = "mean number of centres within the cut, over the region"},
-                    {.name = "neighbour_share",
-                     .places = "neighbours",
-                     .values = histogram,
-                     .long_name = "fraction of the region's spheres with so many neighbours",
-                     .source = "Rosato et al. 2010, fig. 8"},
-                    {.name = "n_c",
-                     .values = {mean / static_cast<double>(in_region.size())},
-                     .long_name = "mean number of neighbours, over the region",
-                     .source = "Rosato et al. 2010, fig. 3"},
-                    {.name = "n_c_all",
-                     .values = {all / static_cast<double>(numbers.size())},
-                     .long_name = "the same over all spheres",
-                     .source = "Rosato et al. 2010, fig. 3"},
-                    {.name = "n_spheres",
-                     .values = {static_cast<double>(in_region.size())},
-                     .long_name = "spheres of the region",
-                     .is_compared = false}};
-  if (in.packing.sizes) add_kinds(in, settings.cut, out);
-  return out;
+  measurement.quantities = {
+      {.name = "n_c_of_cut",
+       .places = "cut",
+       .values = curve.coordination,
+       .long_name = "mean number of centres within the cut, over the region"},
+      {.name = "neighbour_share",
+       .places = "neighbours",
+       .values = histogram,
+       .long_name = "fraction of the region's spheres with so many neighbours",
+       .source = "Rosato et al. 2010, fig. 8"},
+      {.name = "n_c",
+       .values = {mean / static_cast<double>(in_region.size())},
+       .long_name = "mean number of neighbours, over the region",
+       .source = "Rosato et al. 2010, fig. 3"},
+      {.name = "n_c_all",
+       .values = {all / static_cast<double>(numbers.size())},
+       .long_name = "the same over all spheres",
+       .source = "Rosato et al. 2010, fig. 3"},
+      {.name = "n_spheres",
+       .values = {static_cast<double>(in_region.size())},
+       .long_name = "spheres of the region",
+       .is_compared = false}};
+  if (measured.packing.sizes) add_kinds(measured, settings.cut, measurement);
+  return measurement;
 }
 
-Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
-  if (in.packing.sizes) return measured_partial_pairs(in, settings);
-  const double r_max = settings.r_max.value_or(widest_pairs(in.packing.container));
+Measurement measure_part(MeasuredPacking& measured, const PairsSettings& settings) {
+  if (measured.packing.sizes) return measured_partial_pairs(measured, settings);
+  const double r_max = settings.r_max.value_or(widest_pairs(measured.packing.container));
   const PairCorrelation pairs =
-      pair_correlation(in.packing, {.r_max = r_max, .bin_width = settings.bin_width});
+      pair_correlation(measured.packing, {.r_max = r_max, .bin_width = settings.bin_width});
   const auto centres = static_cast<double>(pairs.n_centres);
   const std::vector<double> counts(pairs.counts.begin(), pairs.counts.end());
   std::vector<double> ends;
   for (const double r : pairs.r) ends.push_back(r + 0.5 * pairs.bin_width);
-  Measurement out;
-  out.places = {{"r", pairs.r, "diameter", "distance of centres, middle of a bin"},
-                {"r_end", std::move(ends), "diameter", "distance of centres, end of a bin"}};
-  out.quantities = {
+  Measurement measurement;
+  measurement.places = {
+      {"r", pairs.r, "diameter", "distance of centres, middle of a bin"},
+      {"r_end", std::move(ends), "diameter", "distance of centres, end of a bin"}};
+  measurement.quantities = {
       {.name = "g",
        .places = "r",
        .values = pairs.g(),
@@ -221,35 +224,36 @@ Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings) {
     std::ostringstream text;
     text << "no value beyond r_end = " << std::setprecision(4) << last
          << ": no larger sphere about a centre has room between the sides";
-    out.notes.emplace_back("neighbours", text.str());
+    measurement.notes.emplace_back("neighbours", text.str());
   }
-  return out;
+  return measurement;
 }
 
 namespace {
 
 /// Spheres of the region, and how many of them have sides within 3/2: sites of neighbours at
 /// contact lie beyond these sides, and what begins there is no bulk.
-void add_nearness(const MeasuredPacking& in, Measurement& out) {
-  Region inner = in.region;
+void add_nearness(const MeasuredPacking& measured, Measurement& measurement) {
+  Region inner = measured.region;
   inner.from_sides = 3 * sphere_radius;
   double spheres = 0, near = 0;
-  for (std::size_t i = 0; i < in.packing.centres.size(); ++i) {
-    if (!in.in_region(i)) continue;
+  for (std::size_t i = 0; i < measured.packing.centres.size(); ++i) {
+    if (!measured.in_region(i)) continue;
     ++spheres;
-    near += inner.contains(in.packing.container, in.packing.centres[i]) ? 0 : 1;
+    near += inner.contains(measured.packing.container, measured.packing.centres[i]) ? 0 : 1;
   }
-  out.quantities.push_back({.name = "n_spheres",
-                            .values = {spheres},
-                            .long_name = "spheres of the region",
-                            .with_error = false});
-  out.quantities.push_back({.name = "near_sides",
-                            .values = {near / spheres},
-                            .long_name = "fraction of them less than 3/2 from a side, beyond which "
-                                         "sites of their neighbours lie",
-                            .with_error = false});
+  measurement.quantities.push_back({.name = "n_spheres",
+                                    .values = {spheres},
+                                    .long_name = "spheres of the region",
+                                    .with_error = false});
+  measurement.quantities.push_back({.name = "near_sides",
+                                    .values = {near / spheres},
+                                    .long_name =
+                                        "fraction of them less than 3/2 from a side, beyond which "
+                                        "sites of their neighbours lie",
+                                    .with_error = false});
   if (near > 0.5 * spheres) {
-    out.notes.emplace_back(
+    measurement.notes.emplace_back(
         "sides",
         "most spheres of the region are less than 3/2 from a side and have no neighbours beyond "
         "it: crystals that do not begin at the side count as disordered, and q6 of gases is up to "
@@ -259,13 +263,13 @@ void add_nearness(const MeasuredPacking& in, Measurement& out) {
 
 }  // namespace
 
-Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
-  require_height_bins(in.packing, settings.bin_width);
-  const NeighbourTable nearest = nearest_neighbours(in.packing);
+Measurement measure_part(MeasuredPacking& measured, const OrderSettings& settings) {
+  require_height_bins(measured.packing, settings.bin_width);
+  const NeighbourTable nearest = nearest_neighbours(measured.packing);
   const std::vector<CrystalOrder> orders = crystal_order(nearest);
   const std::vector<BondOrder> bonds = bond_order(nearest);
   const auto bin = [&](double z) { return static_cast<std::size_t>(z / settings.bin_width); };
-  const std::size_t n_bins = bin(top_height(in.packing)) + 1;
+  const std::size_t n_bins = bin(top_height(measured.packing)) + 1;
   std::vector<Means> by_height(n_order_columns, Means(n_bins));
   std::vector<Means> of_region(n_order_columns, Means(1));
   for (std::size_t i = 0; i < orders.size(); ++i) {
@@ -275,39 +279,40 @@ Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings) {
                                             bonds[i].q4,
                                             bonds[i].q6,
                                             bonds[i].w6};
-    const bool surrounded = nearest.of(i).size() == 12;  // or q4, q6, w6 compare with no other's
+    const bool surrounded =
+        nearest.neighbours_of(i).size() == 12;  // or q4, q6, w6 compare with no other's
     for (std::size_t c = 0; c < n_order_columns; ++c) {
       if (c >= first_bond_column && !surrounded) continue;
-      by_height[c].add(bin(in.packing.centres[i].z), values[c]);
-      if (in.in_region(i)) of_region[c].add(0, values[c]);
+      by_height[c].add(bin(measured.packing.centres[i].z), values[c]);
+      if (measured.in_region(i)) of_region[c].add(0, values[c]);
     }
   }
-  Measurement out;
-  out.places = {{"height", middles_of_bins(n_bins, settings.bin_width), "diameter",
-                 "height above the floor, middle of a bin"}};
+  Measurement measurement;
+  measurement.places = {{"height", middles_of_bins(n_bins, settings.bin_width), "diameter",
+                         "height above the floor, middle of a bin"}};
   for (std::size_t c = 0; c < n_order_columns; ++c) {
     const auto& [name, at_height, long_name, source] = order_columns[c];
-    out.quantities.push_back({.name = std::string(at_height),
-                              .places = "height",
-                              .values = by_height[c].values(),
-                              .long_name = long_name,
-                              .source = source,
-                              .beyond = not_a_number});
-    out.quantities.push_back({.name = std::string(name),
-                              .values = of_region[c].values(),
-                              .long_name = long_name,
-                              .source = source});
+    measurement.quantities.push_back({.name = std::string(at_height),
+                                      .places = "height",
+                                      .values = by_height[c].values(),
+                                      .long_name = long_name,
+                                      .source = source,
+                                      .beyond = not_a_number});
+    measurement.quantities.push_back({.name = std::string(name),
+                                      .values = of_region[c].values(),
+                                      .long_name = long_name,
+                                      .source = source});
   }
-  if (Boundary(in.packing.container).has_floor()) {
-    out.quantities.push_back(
+  if (Boundary(measured.packing.container).has_floor()) {
+    measurement.quantities.push_back(
         {.name = "ordered_height",
-         .values = {ordered_height(in.packing, orders)},
+         .values = {ordered_height(measured.packing, orders)},
          .units = "diameter",
          .long_name = "height up to which half of the spheres, layer by layer, are fcc or hcp",
          .source = stukowski});
   }
-  add_nearness(in, out);
-  return out;
+  add_nearness(measured, measurement);
+  return measurement;
 }
 
 }  // namespace jostle::inline structure

@@ -25,33 +25,33 @@ struct MeasuredPacking {
   }
 };
 
-Measurement measure_part(MeasuredPacking& in, const ProfileSettings& settings);
-Measurement measure_part(MeasuredPacking& in, const SidesSettings& settings);
-Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings);
-Measurement measure_part(MeasuredPacking& in, const CoordinationSettings& settings);
-Measurement measure_part(MeasuredPacking& in, const PairsSettings& settings);
-Measurement measure_part(MeasuredPacking& in, const OrderSettings& settings);
-Measurement measure_part(MeasuredPacking& in, const GapsSettings& settings);
-Measurement measure_part(MeasuredPacking& in, const StructureFactorSettings& settings);
-Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings);
-Measurement measure_part(MeasuredPacking& in, const ClustersSettings& settings);
-Measurement measure_part(MeasuredPacking& in, const PoresSettings& settings);
-Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings);
-Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const ProfileSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const SidesSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const LayersSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const CoordinationSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const PairsSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const OrderSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const GapsSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const StructureFactorSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const VoronoiSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const ClustersSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const PoresSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const VoidSettings& settings);
+Measurement measure_part(MeasuredPacking& measured, const HolesSettings& settings);
 
 /// Pairs of a mixture by their kinds, counted from the first sphere of each.
 class KindPairs {
  public:
-  explicit KindPairs(const MeasuredPacking& in);
+  explicit KindPairs(const MeasuredPacking& measured);
   /// Sphere `j` is a partner of sphere `i`; add(j, i) counts it the other way round.
   void add(std::size_t i, std::size_t j);
   /// Adds the places "pair" and "kind", the mean numbers of partners over the region's spheres and
   /// over all, and the number of spheres of each kind. Over all, N_i n_ij = N_j n_ji.
   void write(std::string_view of_region, std::string_view of_all, std::string_view region_meaning,
-             std::string_view all_meaning, Measurement& out) const;
+             std::string_view all_meaning, Measurement& measurement) const;
 
  private:
-  const MeasuredPacking& in_;
+  const MeasuredPacking& measured_;
   std::vector<double> in_region_, all_;           // [n_kinds^2], first kind by second
   std::vector<double> spheres_, region_spheres_;  // [n_kinds]
 };

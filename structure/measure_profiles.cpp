@@ -26,180 +26,184 @@ Places heights(std::vector<double> values) {
 
 /// A quantity at the middles of a profile's bins.
 void add_profile(const char* places, const Profile& profile, const char* name,
-                 const char* long_name, const char* source, Measurement& into) {
-  into.quantities.push_back({.name = name,
-                             .places = places,
-                             .values = profile.values,
-                             .long_name = long_name,
-                             .source = source});
+                 const char* long_name, const char* source, Measurement& measurement) {
+  measurement.quantities.push_back({.name = name,
+                                    .places = places,
+                                    .values = profile.values,
+                                    .long_name = long_name,
+                                    .source = source});
 }
 
 void add_along(Axis axis, const Packing& packing, HeightWindow window, double bin_width,
-               Measurement& into) {
+               Measurement& measurement) {
   const bool x = axis == Axis::x;
   const char* const places = x ? "x" : "y";
   const double width = x ? width_x(packing.container) : width_y(packing.container);
   const Profile profile =
       transverse_profile(packing, axis, even_edges(0, width, bin_width), window);
-  into.places.push_back({places, middles(profile), "diameter", "middle of a bin"});
+  measurement.places.push_back({places, middles(profile), "diameter", "middle of a bin"});
   add_profile(places, profile, x ? "phi_x" : "phi_y",
               "packing fraction of slabs parallel to a side", "Philippe & Bideau 2001, fig. 7",
-              into);
-  into.quantities.push_back({.name = x ? "phi_x_cut" : "phi_y_cut",
-                             .places = places,
-                             .values = transverse_cuts(packing, axis, middles(profile), window),
-                             .long_name = "area fraction of plane cuts parallel to a side"});
+              measurement);
+  measurement.quantities.push_back(
+      {.name = x ? "phi_x_cut" : "phi_y_cut",
+       .places = places,
+       .values = transverse_cuts(packing, axis, middles(profile), window),
+       .long_name = "area fraction of plane cuts parallel to a side"});
 }
 
 /// Where x and y are alike.
-void add_mean_of_axes(const Packing& packing, Measurement& into) {
+void add_mean_of_axes(const Packing& packing, Measurement& measurement) {
   const Boundary boundary(packing.container);
   if (boundary.width_x != boundary.width_y || boundary.periodic_x != boundary.periodic_y) return;
-  std::vector<double> mean = into.find("phi_x")->values;
-  const std::vector<double>& other = into.find("phi_y")->values;
-  for (std::size_t k = 0; k < mean.size(); ++k) mean[k] = 0.5 * (mean[k] + other[k]);
-  into.quantities.push_back({.name = "phi_xy",
-                             .places = "x",
-                             .values = std::move(mean),
-                             .long_name = "the mean of phi_x and phi_y",
-                             .source = "Philippe & Bideau 2001, fig. 7"});
+  std::vector<double> mean = measurement.find("phi_x")->values;
+  const std::vector<double>& second_profile = measurement.find("phi_y")->values;
+  for (std::size_t k = 0; k < mean.size(); ++k) mean[k] = 0.5 * (mean[k] + second_profile[k]);
+  measurement.quantities.push_back({.name = "phi_xy",
+                                    .places = "x",
+                                    .values = std::move(mean),
+                                    .long_name = "the mean of phi_x and phi_y",
+                                    .source = "Philippe & Bideau 2001, fig. 7"});
 }
 
 void add_from_walls(const Packing& packing, HeightWindow window, const SidesSettings& settings,
-                    Measurement& into) {
+                    Measurement& measurement) {
   const Boundary boundary(packing.container);
   if (!boundary.has_walls()) return;
   constexpr double endless = std::numeric_limits<double>::infinity();
-  const double apart = std::min(boundary.periodic_x ? endless : boundary.width_x,
-                                boundary.periodic_y ? endless : boundary.width_y);
+  const double wall_distance = std::min(boundary.periodic_x ? endless : boundary.width_x,
+                                        boundary.periodic_y ? endless : boundary.width_y);
   if (!boundary.tube) {
-    const double half = 0.5 * apart;
+    const double half = 0.5 * wall_distance;
     const Profile walls = wall_profile(packing, even_edges(0, half, settings.bin_width), window);
-    into.places.push_back(
+    measurement.places.push_back(
         {"wall_distance", middles(walls), "diameter", "distance to the nearest wall"});
     add_profile("wall_distance", walls, "phi_wall", "packing fraction against the nearest wall",
-                "Philippe & Bideau 2001, fig. 7", into);
+                "Philippe & Bideau 2001, fig. 7", measurement);
   } else {
     const Profile rings =
         radial_profile(packing, even_edges(0, boundary.axis(), settings.bin_width), window);
-    into.places.push_back({"radius", middles(rings), "diameter", "distance from the axis"});
+    measurement.places.push_back({"radius", middles(rings), "diameter", "distance from the axis"});
     add_profile("radius", rings, "phi_radial", "packing fraction of rings around the axis", "",
-                into);
+                measurement);
   }
-  if (apart <= 2 * settings.reach) {
-    into.notes.emplace_back("lateral", "the walls are less than twice the reach apart");
+  if (wall_distance <= 2 * settings.reach) {
+    measurement.notes.emplace_back("lateral", "the walls are less than twice the reach apart");
     return;
   }
-  const LateralCentral both = lateral_and_central(packing, window, settings.reach);
-  into.quantities.push_back({.name = "lateral",
-                             .values = {both.lateral},
-                             .long_name = "packing fraction within the reach of a wall",
-                             .source = "Philippe & Bideau 2001, fig. 8",
-                             .with_change = true});
-  into.quantities.push_back({.name = "central",
-                             .values = {both.central},
-                             .long_name = "packing fraction beyond the reach of walls",
-                             .source = "Philippe & Bideau 2001, fig. 8",
-                             .with_change = true});
+  const LateralCentral fractions = lateral_and_central(packing, window, settings.reach);
+  measurement.quantities.push_back({.name = "lateral",
+                                    .values = {fractions.lateral},
+                                    .long_name = "packing fraction within the reach of a wall",
+                                    .source = "Philippe & Bideau 2001, fig. 8",
+                                    .with_change = true});
+  measurement.quantities.push_back({.name = "central",
+                                    .values = {fractions.central},
+                                    .long_name = "packing fraction beyond the reach of walls",
+                                    .source = "Philippe & Bideau 2001, fig. 8",
+                                    .with_change = true});
 }
 
 }  // namespace
 
-Measurement measure_part(MeasuredPacking& in, const ProfileSettings& settings) {
-  require_floor(in.packing);
-  require_height_bins(in.packing, settings.bin_width);
+Measurement measure_part(MeasuredPacking& measured, const ProfileSettings& settings) {
+  require_floor(measured.packing);
+  require_height_bins(measured.packing, settings.bin_width);
   const Profile vertical =
-      vertical_profile(in.packing, height_edges(in.packing, settings.bin_width));
-  GradientRange range = gradient_range(in.packing.container);
+      vertical_profile(measured.packing, height_edges(measured.packing, settings.bin_width));
+  GradientRange range = gradient_range(measured.packing.container);
   if (settings.gradient) {
     range.low = settings.gradient->low;
     range.high = settings.gradient->high;
   }
   range.smoothing = settings.smoothing;
-  Measurement out;
-  out.places = {heights(middles(vertical))};
+  Measurement measurement;
+  measurement.places = {heights(middles(vertical))};
   add_profile("height", vertical, "phi", "packing fraction of slabs",
-              "Philippe & Bideau 2001, sec. IV", out);
+              "Philippe & Bideau 2001, sec. IV", measurement);
   add_profile("height", settings.smoothing > 0 ? smoothed(vertical, settings.smoothing) : vertical,
               "phi_smoothed", "the same after a boxcar mean", "Philippe & Bideau 2001, fig. 6",
-              out);
-  out.quantities.push_back({.name = "phi_cut",
-                            .places = "height",
-                            .values = vertical_cuts(in.packing, middles(vertical)),
-                            .long_name = "area fraction of plane cuts at the middles of bins",
-                            .source = "Philippe & Bideau 2001, sec. IV"});
+              measurement);
+  measurement.quantities.push_back(
+      {.name = "phi_cut",
+       .places = "height",
+       .values = vertical_cuts(measured.packing, middles(vertical)),
+       .long_name = "area fraction of plane cuts at the middles of bins",
+       .source = "Philippe & Bideau 2001, sec. IV"});
   const Gradient found = gradient(vertical, range);
-  out.quantities.push_back({.name = "alpha",
-                            .values = {found.alpha},
-                            .units = "1/R",
-                            .long_name = "minus the slope of the smoothed profile",
-                            .source = "Philippe & Bideau 2001, fig. 8"});
-  out.quantities.push_back({.name = "alpha_line_error",
-                            .values = {found.error},
-                            .units = "1/R",
-                            .long_name = "of alpha, from the scatter about the line",
-                            .with_error = false});
-  if (!found.reason.empty()) out.notes.emplace_back("alpha", found.reason);
-  if (in.region.high > in.region.low) {
-    out.quantities.push_back({.name = "phi_region",
-                              .values = {fraction_of(in.packing, in.region)},
-                              .long_name = "packing fraction between the heights of the region"});
+  measurement.quantities.push_back({.name = "alpha",
+                                    .values = {found.alpha},
+                                    .units = "1/R",
+                                    .long_name = "minus the slope of the smoothed profile",
+                                    .source = "Philippe & Bideau 2001, fig. 8"});
+  measurement.quantities.push_back({.name = "alpha_line_error",
+                                    .values = {found.error},
+                                    .units = "1/R",
+                                    .long_name = "of alpha, from the scatter about the line",
+                                    .with_error = false});
+  if (!found.reason.empty()) measurement.notes.emplace_back("alpha", found.reason);
+  if (measured.region.high > measured.region.low) {
+    measurement.quantities.push_back(
+        {.name = "phi_region",
+         .values = {fraction_of(measured.packing, measured.region)},
+         .long_name = "packing fraction between the heights of the region"});
   }
-  return out;
+  return measurement;
 }
 
-Measurement measure_part(MeasuredPacking& in, const SidesSettings& settings) {
-  require_floor(in.packing);
-  const HeightWindow window = settings.heights.value_or(transverse_window(in.packing));
-  Measurement out;
-  if (!Boundary(in.packing.container).tube) {
-    add_along(Axis::x, in.packing, window, settings.bin_width, out);
-    add_along(Axis::y, in.packing, window, settings.bin_width, out);
-    add_mean_of_axes(in.packing, out);
+Measurement measure_part(MeasuredPacking& measured, const SidesSettings& settings) {
+  require_floor(measured.packing);
+  const HeightWindow window = settings.heights.value_or(transverse_window(measured.packing));
+  Measurement measurement;
+  if (!Boundary(measured.packing.container).tube) {
+    add_along(Axis::x, measured.packing, window, settings.bin_width, measurement);
+    add_along(Axis::y, measured.packing, window, settings.bin_width, measurement);
+    add_mean_of_axes(measured.packing, measurement);
   }
-  add_from_walls(in.packing, window, settings, out);
-  return out;
+  add_from_walls(measured.packing, window, settings, measurement);
+  return measurement;
 }
 
-Measurement measure_part(MeasuredPacking& in, const LayersSettings& settings) {
-  require_floor(in.packing);
-  require_height_bins(in.packing, settings.bin_width);
-  const std::vector<Layer> found = layers(in.packing, settings.rule.tolerance);
-  const std::vector<double> n = height_histogram(in.packing, settings.bin_width);
-  std::vector<double> at, where, filling, share;
+Measurement measure_part(MeasuredPacking& measured, const LayersSettings& settings) {
+  require_floor(measured.packing);
+  require_height_bins(measured.packing, settings.bin_width);
+  const std::vector<Layer> found = layers(measured.packing, settings.rule.tolerance);
+  const std::vector<double> n = height_histogram(measured.packing, settings.bin_width);
+  std::vector<double> tops, layer_heights, filling, share;
   for (const Layer& layer : found) {
-    at.push_back(layer.height);
-    where.push_back(layer.found);
+    tops.push_back(layer.height);
+    layer_heights.push_back(layer.found);
     filling.push_back(layer.filling);
     share.push_back(layer.filling > 0 ? layer.share : not_a_number);
   }
-  Measurement out;
-  out.places = {heights(middles_of_bins(n.size(), settings.bin_width)),
-                {"layer_height", at, "diameter", "hcp layers, 1/2 + k sqrt(2/3)"}};
-  out.quantities = {{.name = "n",
-                     .places = "height",
-                     .values = n,
-                     .long_name = "fraction of all centres per bin",
-                     .source = "Rosato et al. 2010, fig. 6"},
-                    {.name = "found_height",
-                     .places = "layer_height",
-                     .values = where,
-                     .units = "diameter",
-                     .long_name = "mean height of the centres near that place of the layer",
-                     .beyond = not_a_number},
-                    {.name = "filling",
-                     .places = "layer_height",
-                     .values = filling,
-                     .long_name = "centres between mid-planes over those of a full layer"},
-                    {.name = "share",
-                     .places = "layer_height",
-                     .values = share,
-                     .long_name = "part of them within the tolerance of the found height",
-                     .beyond = not_a_number},
-                    {.name = "grown_layers",
-                     .values = {static_cast<double>(grown_layers(in.packing, settings.rule))},
-                     .long_name = "ordered layers from the floor up to the first that is not"}};
-  return out;
+  Measurement measurement;
+  measurement.places = {heights(middles_of_bins(n.size(), settings.bin_width)),
+                        {"layer_height", tops, "diameter", "hcp layers, 1/2 + k sqrt(2/3)"}};
+  measurement.quantities = {
+      {.name = "n",
+       .places = "height",
+       .values = n,
+       .long_name = "fraction of all centres per bin",
+       .source = "Rosato et al. 2010, fig. 6"},
+      {.name = "found_height",
+       .places = "layer_height",
+       .values = layer_heights,
+       .units = "diameter",
+       .long_name = "mean height of the centres near that place of the layer",
+       .beyond = not_a_number},
+      {.name = "filling",
+       .places = "layer_height",
+       .values = filling,
+       .long_name = "centres between mid-planes over those of a full layer"},
+      {.name = "share",
+       .places = "layer_height",
+       .values = share,
+       .long_name = "part of them within the tolerance of the found height",
+       .beyond = not_a_number},
+      {.name = "grown_layers",
+       .values = {static_cast<double>(grown_layers(measured.packing, settings.rule))},
+       .long_name = "ordered layers from the floor up to the first that is not"}};
+  return measurement;
 }
 
 }  // namespace jostle::inline structure

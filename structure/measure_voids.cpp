@@ -46,12 +46,12 @@ struct InnerCells {
   std::vector<std::size_t> spheres;  // whose cells these are
 };
 
-InnerCells inner_cells(MeasuredPacking& in, const VoronoiSettings& settings) {
-  const VoronoiCells& cells = in.voronoi();
+InnerCells inner_cells(MeasuredPacking& measured, const VoronoiSettings& settings) {
+  const VoronoiCells& cells = measured.voronoi();
   const std::vector<double> fractions = local_fractions(cells), free = free_volumes(cells);
   InnerCells inner;
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
-    if ((cells.cut[i] != 0 && !settings.cut_cells) || !in.in_region(i)) continue;
+    if ((cells.cut[i] != 0 && !settings.cut_cells) || !measured.in_region(i)) continue;
     const std::uint32_t faces = n_faces(cells, i, settings.least_area);
     if (inner.face_counts.size() <= faces) inner.face_counts.resize(faces + 1, 0);
     ++inner.face_counts[faces];
@@ -65,8 +65,8 @@ InnerCells inner_cells(MeasuredPacking& in, const VoronoiSettings& settings) {
 }
 
 /// Means over the cells of every kind of a mixture.
-void add_kinds(const MeasuredPacking& in, const InnerCells& inner, Measurement& out) {
-  const Sizes& sizes = *in.packing.sizes;
+void add_kinds(const MeasuredPacking& measured, const InnerCells& inner, Measurement& measurement) {
+  const Sizes& sizes = *measured.packing.sizes;
   const std::size_t n = sizes.kinds().size();
   std::vector<std::string> names;
   for (const SphereKind& kind : sizes.kinds()) names.push_back(kind.name);
@@ -83,14 +83,14 @@ void add_kinds(const MeasuredPacking& in, const InnerCells& inner, Measurement& 
     fractions[kind] /= cells[kind];
     faces[kind] /= cells[kind];
   }
-  out.places.push_back({"kind", std::move(names), "1", "kind of spheres"});
+  measurement.places.push_back({"kind", std::move(names), "1", "kind of spheres"});
   const auto add = [&](const char* name, std::vector<double>& values, const char* units,
                        const char* long_name) {
-    out.quantities.push_back({.name = name,
-                              .places = "kind",
-                              .values = std::move(values),
-                              .units = units,
-                              .long_name = long_name});
+    measurement.quantities.push_back({.name = name,
+                                      .places = "kind",
+                                      .values = std::move(values),
+                                      .units = units,
+                                      .long_name = long_name});
   };
   add("mean_volume_of_kind", volumes, "diameters^3", "volume of a cell of the kind");
   add("mean_local_fraction_of_kind", fractions, "1", "local packing fraction of the kind");
@@ -98,90 +98,96 @@ void add_kinds(const MeasuredPacking& in, const InnerCells& inner, Measurement& 
   add("cells_of_kind", cells, "1", "whole cells of the kind in the region");
 }
 
-void add_single(const char* name, double value, const char* long_name, Measurement& into,
+void add_single(const char* name, double value, const char* long_name, Measurement& measurement,
                 const char* source = "", const char* units = "1") {
-  into.quantities.push_back(
+  measurement.quantities.push_back(
       {.name = name, .values = {value}, .units = units, .long_name = long_name, .source = source});
 }
 
 }  // namespace
 
-Measurement measure_part(MeasuredPacking& in, const VoronoiSettings& settings) {
+Measurement measure_part(MeasuredPacking& measured, const VoronoiSettings& settings) {
   constexpr double fraction_bin = 0.01, largest_free_volume = 2;
   // A dodecahedron about an equal sphere has 0.755; small spheres fill more about large ones.
-  const std::size_t n_fractions = in.packing.sizes ? 100 : 76;
-  const InnerCells inner = inner_cells(in, settings);
+  const std::size_t n_fractions = measured.packing.sizes ? 100 : 76;
+  const InnerCells inner = inner_cells(measured, settings);
   if (inner.volumes.empty()) throw std::invalid_argument("no whole cell lies in the region");
   const std::vector<double> faces = shares(inner.face_counts);
   const auto n_free = static_cast<std::size_t>(largest_free_volume / settings.bin_width + 0.5);
-  Measurement out;
-  out.places = {{"faces", whole_numbers(faces.size()), "1", "faces of a cell, without the tiniest"},
-                {"free_volume", middles_of_bins(n_free, settings.bin_width), "sphere volumes",
-                 "volume of a cell without its sphere, middle of a bin"},
-                {"local_fraction", middles_of_bins(n_fractions, fraction_bin), "1",
-                 "volume of a sphere over that of its cell, middle of a bin"}};
-  out.quantities = {{.name = "face_share",
-                     .places = "faces",
-                     .values = faces,
-                     .long_name = "fraction of cells with so many faces",
-                     .source = "Rosato et al. 2010, fig. 8"},
-                    {.name = "free_volume_density",
-                     .places = "free_volume",
-                     .values = density(inner.free_volumes, settings.bin_width, n_free),
-                     .units = "1/sphere volume",
-                     .long_name = "probability density of free volumes",
-                     .source = "Rosato et al. 2010, fig. 9"},
-                    {.name = "local_fraction_density",
-                     .places = "local_fraction",
-                     .values = density(inner.fractions, fraction_bin, n_fractions),
-                     .long_name = "probability density of local packing fractions"}};
+  Measurement measurement;
+  measurement.places = {
+      {"faces", whole_numbers(faces.size()), "1", "faces of a cell, without the tiniest"},
+      {"free_volume", middles_of_bins(n_free, settings.bin_width), "sphere volumes",
+       "volume of a cell without its sphere, middle of a bin"},
+      {"local_fraction", middles_of_bins(n_fractions, fraction_bin), "1",
+       "volume of a sphere over that of its cell, middle of a bin"}};
+  measurement.quantities = {{.name = "face_share",
+                             .places = "faces",
+                             .values = faces,
+                             .long_name = "fraction of cells with so many faces",
+                             .source = "Rosato et al. 2010, fig. 8"},
+                            {.name = "free_volume_density",
+                             .places = "free_volume",
+                             .values = density(inner.free_volumes, settings.bin_width, n_free),
+                             .units = "1/sphere volume",
+                             .long_name = "probability density of free volumes",
+                             .source = "Rosato et al. 2010, fig. 9"},
+                            {.name = "local_fraction_density",
+                             .places = "local_fraction",
+                             .values = density(inner.fractions, fraction_bin, n_fractions),
+                             .long_name = "probability density of local packing fractions"}};
   const double free_mean = mean_of(inner.free_volumes);
   const double sigma = zero_within_rounding(deviation_of(inner.free_volumes, free_mean), free_mean);
   const double above_least = free_mean - least_free_volume;
-  add_single("mean_faces", mean_of(inner.faces), "faces a cell", out, "Rosato et al. 2010, fig. 8");
-  add_single("mean_volume", mean_of(inner.volumes), "volume of a cell", out, "", "diameters^3");
-  add_single("mean_free_volume", free_mean, "free volume of a cell", out,
+  add_single("mean_faces", mean_of(inner.faces), "faces a cell", measurement,
+             "Rosato et al. 2010, fig. 8");
+  add_single("mean_volume", mean_of(inner.volumes), "volume of a cell", measurement, "",
+             "diameters^3");
+  add_single("mean_free_volume", free_mean, "free volume of a cell", measurement,
              "Rosato et al. 2010, fig. 9", "sphere volumes");
-  add_single("sigma_free_volume", sigma, "deviation of the free volumes of cells", out, "",
+  add_single("sigma_free_volume", sigma, "deviation of the free volumes of cells", measurement, "",
              "sphere volumes");
-  add_single("mean_local_fraction", mean_of(inner.fractions), "local packing fraction", out);
+  add_single("mean_local_fraction", mean_of(inner.fractions), "local packing fraction",
+             measurement);
   const bool varies = sigma > 1e-6 * free_mean;  // not so in a perfect crystal
-  if (!in.packing.sizes)
+  if (!measured.packing.sizes)
     add_single("k", varies ? above_least * above_least / (sigma * sigma) : not_a_number,
                "shape of the k-gamma distribution by its moments: (mean - least)^2 / variance, the "
                "least cell being a regular dodecahedron",
-               out, "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309");
+               measurement, "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309");
   add_single("n_cells", static_cast<double>(inner.volumes.size()), "whole cells of the region",
-             out);
-  out.quantities.back().is_compared = false;
-  const VoronoiCells& cells = in.voronoi();
-  const double lid = surface_height(in.packing);
+             measurement);
+  measurement.quantities.back().is_compared = false;
+  const VoronoiCells& cells = measured.voronoi();
+  const double lid = surface_height(measured.packing);
   double all = 0;
   for (const double volume : cells.volumes) all += volume;
-  add_single("volume_excess", all / volume_of(in.packing.container, lid) - 1,
+  add_single("volume_excess", all / volume_of(measured.packing.container, lid) - 1,
              "volume of all cells over that of the container up to the lid, less 1: above 0 "
              "beside the curved wall of a cylinder, whose cells end at planes",
-             out);
+             measurement);
   add_single(
       "inconsistent_cells", static_cast<double>(cells.inconsistent),
       "of all cells, those with a face that is not as large from the other side: beside the curved "
       "wall of a cylinder, or where voro++ could not make them out; volumes of the region's cells "
       "are right all the same",
-      out);
-  if (in.packing.sizes) {
-    out.notes.emplace_back("k", "k and the k-gamma law require equal spheres");
-    add_kinds(in, inner, out);
+      measurement);
+  if (measured.packing.sizes) {
+    measurement.notes.emplace_back("k", "k and the k-gamma law require equal spheres");
+    add_kinds(measured, inner, measurement);
   }
-  if (cells.inconsistent > 0 && std::holds_alternative<Cylinder>(in.packing.container))
-    out.notes.emplace_back("inconsistent_cells",
-                           "as expected in a tube, whose wall cuts cells at planes; those of the "
-                           "region are right");
-  return out;
+  if (cells.inconsistent > 0 && std::holds_alternative<Cylinder>(measured.packing.container))
+    measurement.notes.emplace_back(
+        "inconsistent_cells",
+        "as expected in a tube, whose wall cuts cells at planes; those of the "
+        "region are right");
+  return measurement;
 }
 
-Measurement measure_part(MeasuredPacking& in, const PoresSettings& settings) {
+Measurement measure_part(MeasuredPacking& measured, const PoresSettings& settings) {
   const std::vector<Pore> found =
-      pores_in(pores(in.packing, in.voronoi(), settings.merge), in.packing.container, in.region);
+      pores_in(pores(measured.packing, measured.voronoi(), settings.merge),
+               measured.packing.container, measured.region);
   if (found.empty()) throw std::invalid_argument("no pore lies in the region");
   const PoreDistribution sizes = pore_distribution(found, settings.bin_width, settings.largest);
   double tetrahedral = 0, octahedral = 0, touched = 0;
@@ -192,53 +198,54 @@ Measurement measure_part(MeasuredPacking& in, const PoresSettings& settings) {
     octahedral += site == Site::octahedral ? 1 : 0;
   }
   const auto number = static_cast<double>(found.size());
-  Measurement out;
-  out.places = {{"xi", sizes.xi, "R", "radius of a pore, middle of a bin"}};
-  out.quantities = {{.name = "rho_xi",
-                     .places = "xi",
-                     .values = sizes.rho_xi,
-                     .long_name = "pores a unit of xi; their number is its integral",
-                     .source = "Philippe & Bideau 2001, sec. V"},
-                    {.name = "rho_v",
-                     .places = "xi",
-                     .values = sizes.rho_v,
-                     .long_name = "pores a unit of v = xi^3",
-                     .source = "Philippe & Bideau 2001, fig. 10"},
-                    {.name = "v_rho_v",
-                     .places = "xi",
-                     .values = sizes.v_rho_v,
-                     .long_name = "pores a unit of ln v",
-                     .source = "Philippe & Bideau 2001, fig. 10"}};
-  add_single("n_pores", number, "pores of the region", out, "Philippe & Bideau 2001, sec. V");
-  out.quantities.back().is_compared = false;
-  add_single("nu", mean_pore_volume(found), "mean of xi^3", out, "Philippe & Bideau 2001, sec. V",
-             "sphere volumes");
-  add_single("mean_touched", touched / number, "spheres that a pore touches", out);
+  Measurement measurement;
+  measurement.places = {{"xi", sizes.xi, "R", "radius of a pore, middle of a bin"}};
+  measurement.quantities = {{.name = "rho_xi",
+                             .places = "xi",
+                             .values = sizes.rho_xi,
+                             .long_name = "pores a unit of xi; their number is its integral",
+                             .source = "Philippe & Bideau 2001, sec. V"},
+                            {.name = "rho_v",
+                             .places = "xi",
+                             .values = sizes.rho_v,
+                             .long_name = "pores a unit of v = xi^3",
+                             .source = "Philippe & Bideau 2001, fig. 10"},
+                            {.name = "v_rho_v",
+                             .places = "xi",
+                             .values = sizes.v_rho_v,
+                             .long_name = "pores a unit of ln v",
+                             .source = "Philippe & Bideau 2001, fig. 10"}};
+  add_single("n_pores", number, "pores of the region", measurement,
+             "Philippe & Bideau 2001, sec. V");
+  measurement.quantities.back().is_compared = false;
+  add_single("nu", mean_pore_volume(found), "mean of xi^3", measurement,
+             "Philippe & Bideau 2001, sec. V", "sphere volumes");
+  add_single("mean_touched", touched / number, "spheres that a pore touches", measurement);
   add_single("tetrahedral", tetrahedral / number,
-             "fraction of pores at xi = (3/2)^(1/2) - 1, within the tolerance", out,
+             "fraction of pores at xi = (3/2)^(1/2) - 1, within the tolerance", measurement,
              "Philippe & Bideau 2001, sec. V");
   add_single("octahedral", octahedral / number,
-             "fraction of pores at xi = 2^(1/2) - 1, within the tolerance", out,
+             "fraction of pores at xi = 2^(1/2) - 1, within the tolerance", measurement,
              "Philippe & Bideau 2001, sec. V");
-  return out;
+  return measurement;
 }
 
-Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings) {
+Measurement measure_part(MeasuredPacking& measured, const VoidSettings& settings) {
   std::vector<double> sigma;
   const auto n = static_cast<std::size_t>(settings.largest / settings.step + 1e-9);
   for (std::size_t k = 0; k <= n; ++k) sigma.push_back(static_cast<double>(k) * settings.step);
   sigma.push_back(1);  // the spheres themselves: 1 - Phi
   VoidProbability found =
-      void_probability(in.packing, in.region, sigma, settings.points, in.points);
+      void_probability(measured.packing, measured.region, sigma, settings.points, measured.points);
   const double phi = 1 - found.probability.back();
   found.probability.pop_back();
   found.error.pop_back();
   sigma.pop_back();
   std::vector<double> theory;
   for (const double s : sigma) theory.push_back(gotoh_void_probability(phi, s));
-  Measurement out;
-  out.places = {{"sigma", sigma, "R", "radius of the random sphere"}};
-  out.quantities = {
+  Measurement measurement;
+  measurement.places = {{"sigma", sigma, "R", "radius of the random sphere"}};
+  measurement.quantities = {
       {.name = "p0",
        .places = "sigma",
        .values = found.probability,
@@ -257,13 +264,14 @@ Measurement measure_part(MeasuredPacking& in, const VoidSettings& settings) {
        .values = theory,
        .long_name = "the same of the Percus-Yevick fluid of this packing fraction",
        .source = "Philippe & Bideau 2001, eqs. 8, 9, the sign of 2 Phi corrected"}};
-  add_single("phi", phi, "packing fraction of the region", out);
-  return out;
+  add_single("phi", phi, "packing fraction of the region", measurement);
+  return measurement;
 }
 
-Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings) {
-  const std::vector<BernalHole> holes = bernal_holes(in.packing, in.voronoi(), settings.bonds);
-  const HoleTable table = hole_table(holes, in.packing.container, in.region);
+Measurement measure_part(MeasuredPacking& input, const HolesSettings& settings) {
+  const std::vector<BernalHole> holes =
+      bernal_holes(input.packing, input.voronoi(), settings.bonds);
+  const HoleTable table = hole_table(holes, input.packing.container, input.region);
   if (!(table.volume() > 0)) throw std::invalid_argument("no hole lies in the region");
   std::vector<std::string> names;
   std::vector<double> number, volume, published_number, published_volume;
@@ -286,17 +294,17 @@ Measurement measure_part(MeasuredPacking& in, const HolesSettings& settings) {
                             .with_error = measured};
   };
   constexpr const char* table_one = "Philippe & Bideau 2001, table I";
-  Measurement out;
-  out.places = {{"hole", names, "1", "Bernal's canonical holes"}};
-  out.quantities = {
+  Measurement measurement;
+  measurement.places = {{"hole", names, "1", "Bernal's canonical holes"}};
+  measurement.quantities = {
       column("number_fraction", number, "of the classified holes", "", true),
       column("volume_fraction", volume, "of the classified holes' volume", "", true),
       column("number_fraction_published", published_number, "in Bernal's models", table_one, false),
       column("volume_fraction_published", published_volume, "in Bernal's models", table_one,
              false)};
   add_single("unclassified", table.unclassified_fraction(),
-             "part of the volume in no canonical hole", out);
-  return out;
+             "part of the volume in no canonical hole", measurement);
+  return measurement;
 }
 
 }  // namespace jostle::inline structure

@@ -52,7 +52,9 @@ struct MeasuredQuantity {
   /// counts between ensembles has no meaning of its own and is not tested.
   bool is_compared = true;
 
-  double at(std::size_t place) const { return place < values.size() ? values[place] : beyond; }
+  double value_at(std::size_t place) const {
+    return place < values.size() ? values[place] : beyond;
+  }
   double weight_at(std::size_t place) const { return place < weights.size() ? weights[place] : 0; }
 };
 

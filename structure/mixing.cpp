@@ -17,7 +17,7 @@ namespace {
 
 /// The kind whose mean diameter is first in the order.
 template <class Order>
-std::uint32_t first_kind(const Sizes& sizes, const Order& before) {
+std::uint32_t first_kind(const Sizes& sizes, const Order& order) {
   std::vector<double> sums(sizes.kinds().size(), 0), counts(sums);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     sums[sizes.kind(i)] += sizes.diameter(i);
@@ -27,7 +27,7 @@ std::uint32_t first_kind(const Sizes& sizes, const Order& before) {
   bool found = false;
   for (std::uint32_t k = 0; k < sums.size(); ++k) {
     if (counts[k] == 0) continue;
-    if (!found || before(sums[k] / counts[k], sums[best] / counts[best])) best = k;
+    if (!found || order(sums[k] / counts[k], sums[best] / counts[best])) best = k;
     found = true;
   }
   return best;
@@ -38,13 +38,13 @@ struct CellAxis {
   double low, width;
   std::uint64_t n;
 
-  CellAxis(double from, double to, double about)
-      : low(from),
-        width(to - from),
-        n(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(width / about)))) {}
+  CellAxis(double begin, double end, double centre)
+      : low(begin),
+        width(end - begin),
+        n(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(width / centre)))) {}
 
-  std::uint64_t cell(double at) const {
-    const double place = (at - low) / width * static_cast<double>(n);
+  std::uint64_t cell(double coordinate) const {
+    const double place = (coordinate - low) / width * static_cast<double>(n);
     return static_cast<std::uint64_t>(std::clamp(place, 0.0, static_cast<double>(n - 1)));
   }
 };
@@ -94,19 +94,22 @@ double lacey_index(const Packing& packing, std::uint32_t kind, double cell) {
     const Vec3& r = packing.centres[i];
     Count& count = cells[(z.cell(r.z) * y.n + y.cell(r.y)) * x.n + x.cell(r.x)];
     const double is_kind = packing.sizes->kind(i) == kind ? 1 : 0;
-    for (Count* one : {&count, &bed}) {
-      one->all += 1;
-      one->of_kind += is_kind;
+    for (Count* counts : {&count, &bed}) {
+      counts->all += 1;
+      counts->of_kind += is_kind;
     }
   }
-  const double p = bed.of_kind / bed.all, apart = p * (1 - p);
+  const double p = bed.of_kind / bed.all, segregated_variance = p * (1 - p);
   double variance = 0;
   for (const auto& [number, count] : cells) {
     const double deviation = count.of_kind / count.all - p;
     variance += count.all / bed.all * deviation * deviation;
   }
-  const double random = apart * (static_cast<double>(cells.size()) - 1) / (bed.all - 1);
-  return apart > random ? (apart - variance) / (apart - random) : not_a_number;
+  const double random =
+      segregated_variance * (static_cast<double>(cells.size()) - 1) / (bed.all - 1);
+  return segregated_variance > random
+             ? (segregated_variance - variance) / (segregated_variance - random)
+             : not_a_number;
 }
 
 }  // namespace jostle::inline structure

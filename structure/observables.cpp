@@ -21,18 +21,18 @@ struct Label {
   Spheres spheres = Spheres::equal;
 
   Column operator()(const MeanHeight&) const {
-    return {std::string(MeanHeight::about.name), "diameter",
+    return {std::string(MeanHeight::description.name), "diameter",
             spheres == Spheres::equal
                 ? "mean height of the sphere centres <Z>"
                 : "mean height of the sphere centres <Z>, weighted by the volumes of the spheres",
             "Philippe & Bideau 2001, sec. II"};
   }
   Column operator()(const BottomFraction&) const {
-    return {std::string(BottomFraction::about.name), "1",
+    return {std::string(BottomFraction::description.name), "1",
             "solids fraction Phi_b between the floor and 2 d", "Philippe & Bideau 2001, sec. III"};
   }
   Column operator()(const CorrectedFraction&) const {
-    return {std::string(CorrectedFraction::about.name), "1",
+    return {std::string(CorrectedFraction::description.name), "1",
             "solids fraction <Phi_c> of most of the packing, corrected for the floor",
             "Philippe & Bideau 2001, sec. III"};
   }
@@ -41,17 +41,17 @@ struct Label {
             "Rosato et al. 2010, sec. II"};
   }
   Column operator()(const CrystallineFraction&) const {
-    return {std::string(CrystallineFraction::about.name), "1",
+    return {std::string(CrystallineFraction::description.name), "1",
             "fraction of fcc and hcp spheres in the bulk",
             "Stukowski 2012, doi:10.1088/0965-0393/20/4/045021"};
   }
   Column operator()(const GrownLayers&) const {
-    return {std::string(GrownLayers::about.name), "1",
+    return {std::string(GrownLayers::description.name), "1",
             "ordered layers from the floor up to the first that is not",
             "Rosato et al. 2010, fig. 6"};
   }
   Column operator()(const OrderedHeight&) const {
-    return {std::string(OrderedHeight::about.name), "diameter",
+    return {std::string(OrderedHeight::description.name), "diameter",
             "height up to which half of the spheres, layer by layer, are fcc or hcp",
             "Stukowski 2012, doi:10.1088/0965-0393/20/4/045021"};
   }
@@ -60,7 +60,7 @@ struct Label {
             "mean height of the spheres of kind " + height.kind + ", weighted by volume", "jostle"};
   }
   Column operator()(const Segregation& s) const {
-    return {std::string(Segregation::about.name) + suffix(s.large) + suffix(s.small), "1",
+    return {std::string(Segregation::description.name) + suffix(s.large) + suffix(s.small), "1",
             "segregation S = 2 (z_L - z_S)/H of two kinds", "jostle"};
   }
   Column operator()(const LaceyIndex& index) const {
@@ -68,7 +68,7 @@ struct Label {
     text << "Lacey's mixing index of "
          << (index.kind ? "kind " + *index.kind : "the kind of the largest mean diameter")
          << " on cells of " << index.cell << " d; its random state has fixed numbers of spheres";
-    return {std::string(LaceyIndex::about.name) + suffix(index.kind), "1", text.str(),
+    return {std::string(LaceyIndex::description.name) + suffix(index.kind), "1", text.str(),
             "jostle"};
   }
 
@@ -234,7 +234,9 @@ Column label(const Observable& observable, Spheres spheres) {
 std::string_view observable_symbol(std::string_view name) {
   std::string_view symbol;
   [&]<class... Observables>(std::type_identity<std::variant<Observables...>>) {
-    ((Observables::about.name == name ? void(symbol = Observables::about.symbol) : void()), ...);
+    ((Observables::description.name == name ? void(symbol = Observables::description.symbol)
+                                            : void()),
+     ...);
   }(std::type_identity<Observable>{});
   return symbol;
 }

@@ -20,7 +20,7 @@ namespace jostle::inline structure {
 struct MeanHeight {
   bool operator==(const MeanHeight&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       .name = "mean_height", .text = "<Z>, mean height of the centres, diameters", .symbol = "⟨Z⟩"};
   static constexpr auto fields() { return std::tuple{}; }
 };
@@ -29,9 +29,10 @@ struct MeanHeight {
 struct BottomFraction {
   bool operator==(const BottomFraction&) const = default;
 
-  static constexpr About about{.name = "bottom_fraction",
-                               .text = "Phi_b, packing fraction between the floor and 2 diameters",
-                               .symbol = "Φ_b"};
+  static constexpr Description description{
+      .name = "bottom_fraction",
+      .text = "Phi_b, packing fraction between the floor and 2 diameters",
+      .symbol = "Φ_b"};
   static constexpr auto fields() { return std::tuple{}; }
 };
 
@@ -45,12 +46,12 @@ struct CorrectedFraction {
   double depth = 0.9;
   bool operator==(const CorrectedFraction&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       .name = "corrected_fraction",
       .text = "<Phi_c>, packing fraction up to depth x 2<Z>, corrected at the floor by 16/11",
       .symbol = "⟨Φ_c⟩"};
   static constexpr auto fields() {
-    return std::tuple{field("depth", &CorrectedFraction::depth, Number{above(0, 1)})};
+    return std::tuple{field("depth", &CorrectedFraction::depth, Number{left_open_range(0, 1)})};
   }
 };
 
@@ -63,8 +64,8 @@ struct BulkFraction {
   double taper = 0;
   bool operator==(const BulkFraction&) const = default;
 
-  static constexpr About about{.name = "bulk_fraction",
-                               .text = "Packing fraction between two heights or height quantiles"};
+  static constexpr Description description{
+      .name = "bulk_fraction", .text = "Packing fraction between two heights or height quantiles"};
   static constexpr auto fields() {
     return std::tuple{
         field(
@@ -73,7 +74,7 @@ struct BulkFraction {
                  "expected lower-case letters, digits and underscores, a letter first, at most 64 "
                  "of them"}),
         alternative(&BulkFraction::window),
-        field("taper", &BulkFraction::taper, Number{between(0, 10)},
+        field("taper", &BulkFraction::taper, Number{closed_range(0, 10)},
               "Over what height the window's edges rise and fall, diameters; 0: sharp. A layer "
               "spacing, 0.8165, takes every layer of a close-packed bed wholly or not at all",
               {.unless_default = true})};
@@ -85,8 +86,8 @@ struct BulkFraction {
 struct CrystallineFraction {
   bool operator==(const CrystallineFraction&) const = default;
 
-  static constexpr About about{"crystalline_fraction",
-                               "Fraction of fcc and hcp spheres in the bulk"};
+  static constexpr Description description{"crystalline_fraction",
+                                           "Fraction of fcc and hcp spheres in the bulk"};
   static constexpr auto fields() { return std::tuple{}; }
 };
 
@@ -95,8 +96,8 @@ struct CrystallineFraction {
 struct GrownLayers {
   bool operator==(const GrownLayers&) const = default;
 
-  static constexpr About about{"grown_layers",
-                               "Ordered layers from the floor up to the first that is not"};
+  static constexpr Description description{
+      "grown_layers", "Ordered layers from the floor up to the first that is not"};
   static constexpr auto fields() { return std::tuple{}; }
 };
 
@@ -104,7 +105,7 @@ struct GrownLayers {
 struct OrderedHeight {
   bool operator==(const OrderedHeight&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "ordered_height",
       "Height up to which half of the spheres, layer by layer, are fcc or hcp, diameters"};
   static constexpr auto fields() { return std::tuple{}; }
@@ -122,7 +123,7 @@ struct KindHeight {
   std::string kind;
   bool operator==(const KindHeight&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       .name = "kind_height",
       .text =
           "Mean height of the centres of a kind, weighted by volume, diameters. For a kind "
@@ -139,7 +140,7 @@ struct Segregation {
   std::optional<std::string> large = std::nullopt, small = std::nullopt;
   bool operator==(const Segregation&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       .name = "segregation",
       .text =
           "S = 2 (z_L - z_S)/H of two kinds, H being twice the mean height: 1 where the first "
@@ -159,7 +160,7 @@ struct LaceyIndex {
   std::optional<std::string> kind = std::nullopt;
   bool operator==(const LaceyIndex&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       .name = "lacey_index",
       .text =
           "Lacey's mixing index on cells: 0 where kinds are apart, 1 on average where spheres "
@@ -167,7 +168,7 @@ struct LaceyIndex {
       .symbol = "M"};
   static constexpr auto fields() {
     return std::tuple{
-        field("cell", &LaceyIndex::cell, Number{between(0.5, 1000), "diameters"},
+        field("cell", &LaceyIndex::cell, Number{closed_range(0.5, 1000), "diameters"},
               "Edge of a cell: sides of the container are divided into whole numbers of cells of "
               "about this size"),
         field("kind", &LaceyIndex::kind, kind_name_form,

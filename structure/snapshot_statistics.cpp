@@ -14,7 +14,7 @@ std::vector<unsigned> coordination_numbers(const Packing& packing, double cut) {
   const NeighbourFinder finder(packing, packing.sizes ? cut * 2 * packing.largest_radius() : cut);
   std::vector<unsigned> numbers(finder.size(), 0);
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
-    finder.around(i, [&](std::uint32_t j, Vec3, double distance_squared) {
+    finder.visit_neighbours(i, [&](std::uint32_t j, Vec3, double distance_squared) {
       const double reach = cut * (packing.radius(i) + packing.radius(j));
       if (!packing.sizes || distance_squared <= reach * reach) ++numbers[i];
     });
@@ -40,16 +40,16 @@ CoordinationCurve coordination_curve(const Packing& packing, std::span<const dou
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
     if (region && !region->contains(packing.container, packing.centres[i])) continue;
     ++curve.n_spheres;
-    finder.around(i, [&](std::uint32_t j, Vec3, double distance_squared) {
+    finder.visit_neighbours(i, [&](std::uint32_t j, Vec3, double distance_squared) {
       const double scaled = distance_squared / contact_squared(packing, i, j);
-      const auto at = std::lower_bound(squares.begin(), squares.end(), scaled);
-      if (at == squares.end()) return;  // beyond all cuts: a pair of small spheres
-      ++gained[static_cast<std::size_t>(at - squares.begin())];
+      const auto found = std::lower_bound(squares.begin(), squares.end(), scaled);
+      if (found == squares.end()) return;  // beyond all cuts: a pair of small spheres
+      ++gained[static_cast<std::size_t>(found - squares.begin())];
     });
   }
   std::uint64_t neighbours = 0;
-  for (const std::uint64_t more : gained) {
-    neighbours += more;
+  for (const std::uint64_t gain : gained) {
+    neighbours += gain;
     curve.coordination.push_back(static_cast<double>(neighbours) /
                                  static_cast<double>(curve.n_spheres));
   }

@@ -58,10 +58,10 @@ bool is_results_file(const std::string& path) {
 bool is_same_file(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
-  const fs::path one = fs::weakly_canonical(fs::absolute(a), error);
+  const fs::path first = fs::weakly_canonical(fs::absolute(a), error);
   if (error) return false;
-  const fs::path other = fs::weakly_canonical(fs::absolute(b), error);
-  return !error && one == other;
+  const fs::path second = fs::weakly_canonical(fs::absolute(b), error);
+  return !error && first == second;
 }
 
 NoTapsYet::NoTapsYet(const std::string& path, Live live)

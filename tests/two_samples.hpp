@@ -42,9 +42,9 @@ inline double kolmogorov_smirnov(std::vector<double> a, std::vector<double> b) {
 
 /// Both means within 3 standard errors and both laws within the distance that one pair of equal
 /// laws in 1000 exceeds.
-inline void check_same_law(const char* what, const std::vector<double>& a,
+inline void check_same_law(const char* title, const std::vector<double>& a,
                            const std::vector<double>& b) {
-  INFO(what);
+  INFO(title);
   CHECK(welch(a, b) < 3);
   CHECK(kolmogorov_smirnov(a, b) < 1.949);
 }

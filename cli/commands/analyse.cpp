@@ -81,7 +81,7 @@ using TablesOf =
 /// All files, each with its tables stored in itself.
 int run_each(const AnalyseArguments& arguments, const TablesOf& tables_of) {
   require_files(arguments);
-  const Provenance by = provenance_of_this_run("");
+  const Provenance provenance = provenance_of_this_run("");
   ShownTables shown(arguments.output);
   for (const std::string& input : arguments.inputs) {
     std::vector<Table> tables;
@@ -91,9 +91,9 @@ int run_each(const AnalyseArguments& arguments, const TablesOf& tables_of) {
     }
     if (arguments.inputs.size() > 1) shown.heading(input);
     shown.show(tables, input);
-    shown.keep(input, "analysis", tables, by);
+    shown.keep(input, "analysis", tables, provenance);
   }
-  return shown.end(by);
+  return shown.end(provenance);
 }
 
 int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
@@ -106,7 +106,7 @@ int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
 /// All files together; stored where they are one.
 int run_sweep(const AnalyseArguments& arguments) {
   require_files(arguments);
-  const Provenance by = provenance_of_this_run("");
+  const Provenance provenance = provenance_of_this_run("");
   SweepSettings settings{.quantity = arguments.quantity,
                          .against = arguments.against,
                          .reference = arguments.reference};
@@ -128,8 +128,9 @@ int run_sweep(const AnalyseArguments& arguments) {
   }
   if (arguments.inputs.size() > 1) shown.heading(names);
   shown.show(tables, names);
-  if (arguments.inputs.size() == 1) shown.keep(arguments.inputs.front(), "analysis", tables, by);
-  return shown.end(by);
+  if (arguments.inputs.size() == 1)
+    shown.keep(arguments.inputs.front(), "analysis", tables, provenance);
+  return shown.end(provenance);
 }
 
 /// Refuses a tap that is there twice.
@@ -174,7 +175,7 @@ void add_spectrum(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   kinds.add_last(kind, "Taps at the end (default: half of them)");
   kinds.add_option(kind, "--segment", a.segment,
                    "Taps of a segment of Welch's average (default: about a quarter of them)",
-                   [](Option option) { option.between(16, 1000000000); });
+                   [](Option option) { option.limit(16, 1000000000); });
   kinds.add_option(kind, "--window", a.window, "hann (default) or boxcar", [](Option option) {
     option.one_of({"hann", "boxcar"});
   });
@@ -202,7 +203,7 @@ void add_ageing(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
                    "Taps t_W, separated by commas (default: 0 and two a decade)",
                    [](Option option) { option.separated_by(','); });
   kinds.add_option(kind, "--lags", a.lags, "Taps t, likewise (default: ten a decade)",
-                   [](Option option) { option.separated_by(',').between(1, 1000000000); });
+                   [](Option option) { option.separated_by(',').limit(1, 1000000000); });
   add_example(kind, "jostle analyse fig5.h5 ageing --observable mean_height --waiting-times 10,99");
 }
 
@@ -248,7 +249,7 @@ void add_ordering(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   kinds.add_option(kind, "--threshold", a.threshold,
                    "The value of the observable from which a packing counts as ordered");
   kinds.add_option(kind, "--hold", a.hold, "Taps running that it must be there (default: 10)",
-                   [](Option option) { option.between(1, 1000000000); });
+                   [](Option option) { option.limit(1, 1000000000); });
   kinds.add_option(kind, "--equilibrium", a.equilibrium,
                    "The observable whose last taps are compared (default: the same)");
   kinds.add_last(kind, "Taps at the end that are compared (default: a quarter)");
@@ -301,7 +302,7 @@ void add_memory(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   kinds.add_option(kind, "--lags", a.lags,
                    "Last taps of windows after the switch, separated by commas (default: 1, 3, "
                    "10, 30, ...)",
-                   [](Option option) { option.separated_by(',').between(1, 1000000000); });
+                   [](Option option) { option.separated_by(',').limit(1, 1000000000); });
   add_example(kind, "jostle analyse memory.h5 memory --observable corrected_fraction");
 }
 

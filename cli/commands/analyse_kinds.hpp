@@ -72,8 +72,8 @@ class AnalysisKinds {
     const Option option = kind.add_option(name, value, description);
     if (restrict) restrict(option);
     if (command_.has_option(name)) return;
-    const Option before = command_.add_hidden_option(name, value);
-    if (restrict) restrict(before);
+    const Option leading_option = command_.add_hidden_option(name, value);
+    if (restrict) restrict(leading_option);
   }
 
   void add_last(Command kind, const char* description) {

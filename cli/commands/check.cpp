@@ -68,16 +68,16 @@ void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
   if (estimate.n_strengths > 1) {
     pilot += fmt::format(", taps of {} strengths", estimate.n_strengths);
   }
-  const char* const about = estimate.settled ? "about" : "at least";
+  const char* const qualifier = estimate.settled ? "about" : "at least";
   const std::string a_tap = total_taps(plan) == 0
                                 ? ""
-                                : finite_text("{} {:.0f} {} per tap, ", about,
+                                : finite_text("{} {:.0f} {} per tap, ", qualifier,
                                               estimate.rounds_per_tap, round_name(plan.engine));
   print_wrapped(fmt::format(
       "  {}{}{}, {} {} at {} {}/s: {}{} {} per realization\n", plan.label,
       plan.label.empty() ? "" : ": ", pilot, format_count(static_cast<double>(estimate.units)),
       unit_name(plan.engine), format_count(estimate.units_per_second), unit_name(plan.engine),
-      a_tap, about, format_duration(estimate.realization)));
+      a_tap, qualifier, format_duration(estimate.realization)));
 }
 
 /// Derived numbers of the grains' settings, at the first sweep points that differ in them.

@@ -49,10 +49,12 @@ void require_outputs(const CostArguments& arguments, const LoadedScene& pilot,
 
 /// Returns whether the tables are stored.
 bool write_reports(const CostArguments& arguments, const CostStudy& study, const Scene& scene,
-                   const std::string& output, const std::string& observable, const Provenance& by) {
-  const auto cost = std::ranges::find_if(study.observables(), [&](const CostOfObservable& one) {
-    return one.label.name == observable;
-  });
+                   const std::string& output, const std::string& observable,
+                   const Provenance& provenance) {
+  const auto cost =
+      std::ranges::find_if(study.observables(), [&](const CostOfObservable& observable_cost) {
+        return observable_cost.label.name == observable;
+      });
   const std::optional<double> target =
       arguments.target > 0 ? std::optional(arguments.target) : std::nullopt;
   print_report(cost_text(study, *cost, scene.realizations, target, arguments.layout));
@@ -62,7 +64,7 @@ bool write_reports(const CostArguments& arguments, const CostStudy& study, const
     for (const Table& table : tables) csv += table_csv(table);
     write_text(arguments.csv, csv);
   }
-  return keep_tables(output, "analysis", tables, by, arguments.patience);
+  return keep_tables(output, "analysis", tables, provenance, arguments.patience);
 }
 
 RunSettings settings_of(const CostArguments& arguments, const std::string& output, int threads,
@@ -103,9 +105,9 @@ int run_cost(const CostArguments& arguments) {
                        provenance_of_this_run(fmt::to_string(threads))))
       return exit_io_error;
     return found.failed().empty() ? exit_ok : exit_failed_realizations;
-  } catch (const OtherScene& other) {
-    throw BadInput(
-        fmt::format("{} holds the pilot of another scene:\n{}", other.path(), other.differences()));
+  } catch (const OtherScene& mismatch) {
+    throw BadInput(fmt::format("{} holds the pilot of another scene:\n{}", mismatch.path(),
+                               mismatch.differences()));
   } catch (const BadInput&) {
     throw;
   } catch (const std::exception& error) {
@@ -145,9 +147,9 @@ void add_cost(Command& app, int& code) {
   command
       .add_option("--replicates", a.replicates,
                   "Number of replicates to run, instead of a time (reproducible)")
-      .between(1, 1000000);
+      .limit(1, 1000000);
   command.add_option("--taps", a.taps, "Taps of the pilot (default: 10, or all of fewer)")
-      .between(1, 1000000000);
+      .limit(1, 1000000000);
   command.add_option("--sweep-point", a.point,
                      "Sweep point: its number, VALUE or NAME=VALUE (default: the first)");
   command.add_threads(a.threads);

@@ -254,7 +254,7 @@ int run_fits(const FitArguments& arguments) {
     throw BadInput("--csv holds one curve: choose it with --sweep-point");
   }
   const FitManner manner = manner_of(arguments);
-  const Provenance by = provenance_of_this_run("");
+  const Provenance provenance = provenance_of_this_run("");
   std::vector<Table> tables;
   std::string csv, refusals;  // refusals of curves without a fit
   bool any = false;
@@ -278,19 +278,20 @@ int run_fits(const FitArguments& arguments) {
     if (refusal.empty() && arguments.measured.is_wanted()) drawn = fitted;
   }
   if (arguments.json) {
-    const Json object = {
-        {"input", arguments.input}, {"curves", curves}, {"provenance", provenance_json(by)}};
+    const Json object = {{"input", arguments.input},
+                         {"curves", curves},
+                         {"provenance", provenance_json(provenance)}};
     print_json(object);
   }
   if (any && !arguments.csv.empty()) write_text(arguments.csv, csv);
   if (drawn) {
     const std::string written =
-        write_measured(arguments.measured, *drawn, arguments.input, arguments.force, by);
+        write_measured(arguments.measured, *drawn, arguments.input, arguments.force, provenance);
     if (!arguments.json) print(written);
   }
   const bool to_store = !tables.empty() && !arguments.not_stored && arguments.live == Live::no;
   const bool lost =
-      to_store && !keep_tables(arguments.input, "fits", tables, by, arguments.patience);
+      to_store && !keep_tables(arguments.input, "fits", tables, provenance, arguments.patience);
   if (!any) throw BadInput(refusals);
   if (!refusals.empty()) print_to_standard_error(fmt::format("jostle: {}\n", refusals));
   return lost ? exit_io_error : exit_ok;
@@ -363,7 +364,7 @@ void add_fit(Command& app, int& code) {
                               .one_of({"jackknife", "bootstrap", "none"});
   const Option count =
       command.add_option("--resamples", a.count, "Number of bootstrap samples (default: 1000)")
-          .between(2, 1000000);
+          .limit(2, 1000000);
   const Option seed = command.add_option("--seed", a.seed, "Seed of the bootstrap (default: 1)");
   command.add_threads(a.threads);
   a.layout.width = screen().width;

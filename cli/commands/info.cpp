@@ -50,15 +50,15 @@ std::string state_of(const RunStatus& status) {
   return fmt::format("{}; --resume continues it", status.owner ? "killed" : "stopped");
 }
 
-Json realization_json(const RealizationSummary& one, bool alive, std::string unit) {
+Json realization_json(const RealizationSummary& realization, bool alive, std::string unit) {
   std::ranges::replace(unit, ' ', '_');
-  Json json{{"point", one.id.point},
-            {"realization", one.id.realization},
-            {"status", name(one.status, alive)},
-            {"taps_recorded", one.taps()},
-            {unit, one.work.effort.units},
-            {"seconds", one.work.seconds}};
-  if (!one.reason.empty()) json["reason"] = one.reason;
+  Json json{{"point", realization.id.point},
+            {"realization", realization.id.realization},
+            {"status", name(realization.status, alive)},
+            {"taps_recorded", realization.taps()},
+            {unit, realization.work.effort.units},
+            {"seconds", realization.work.seconds}};
+  if (!realization.reason.empty()) json["reason"] = realization.reason;
   return json;
 }
 
@@ -89,9 +89,9 @@ Json info_json(const ResultsFile& file, const RunStatus& status) {
                       {"taps", point.taps},
                       {"seed", point.seed}});
   }
-  for (const auto& one : status.realizations) {
+  for (const auto& summary : status.realizations) {
     realizations.push_back(
-        realization_json(one, is_alive(status), study.points[one.id.point].unit));
+        realization_json(summary, is_alive(status), study.points[summary.id.point].unit));
   }
   return {{"file", file.path()},
           {"state", name_of(status.state)},
@@ -109,11 +109,11 @@ Json info_json(const ResultsFile& file, const RunStatus& status) {
 std::string counts(const ResultsFile& file, const RunStatus& status) {
   std::map<RealizationStatus, std::uint64_t> by_status;
   std::uint64_t taps = 0, all_taps = 0;
-  for (const auto& one : status.realizations) {
-    if (!in_share(file.shard(), file.study(), one.id)) continue;
-    ++by_status[one.status];
-    taps += one.taps();
-    all_taps += file.study().points[one.id.point].taps;
+  for (const auto& summary : status.realizations) {
+    if (!in_share(file.shard(), file.study(), summary.id)) continue;
+    ++by_status[summary.status];
+    taps += summary.taps();
+    all_taps += file.study().points[summary.id.point].taps;
   }
   std::string text;
   for (const auto& [status_of_some, n] : by_status) {
@@ -128,8 +128,8 @@ void print_info(const ResultsFile& file, const RunStatus& status, const Layout& 
   const Json scene = stored_scene(file);
   std::string text = fmt::format("{}: {}, {}\n", printable_name(file.path()),
                                  text_of(scene, "name"), state_of(status));
-  if (const std::string about = text_of(scene, "description"); !about.empty()) {
-    text += about + "\n";
+  if (const std::string description = text_of(scene, "description"); !description.empty()) {
+    text += description + "\n";
   }
   const auto line = [&](const char* key, const std::string& value) {
     text += fmt::format("  {:<13}{}\n", key, value);

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* schema_name = "scene.schema.json";
 
 struct NewArguments {
-  std::string name, from = "quickstart";
+  std::string name, scene = "quickstart";
   bool force = false;
 };
 
@@ -51,10 +51,10 @@ std::string text_of(const std::string& name) {
 /// The text of a shipped scene with another string, without escapes, at a key of its outermost
 /// object, the first of that name.
 std::string with_string(std::string text, const std::string& key, const std::string& value) {
-  const std::string before = fmt::format("\"{}\": \"", key);
-  const std::size_t found = text.find(before);
+  const std::string prefix = fmt::format("\"{}\": \"", key);
+  const std::size_t found = text.find(prefix);
   if (found == std::string::npos) return text;
-  const std::size_t begin = found + before.size();
+  const std::size_t begin = found + prefix.size();
   return text.replace(begin, text.find('"', begin) - begin, value);
 }
 
@@ -83,7 +83,7 @@ int write_new_scene(const NewArguments& arguments) {
   if (path.extension() == ".json") path.replace_extension();
   const std::string name = path.filename().string();
   path += ".json";
-  std::string text = with_string(text_of(arguments.from), "name", name);
+  std::string text = with_string(text_of(arguments.scene), "name", name);
   text = with_string(text, "$schema", schema_name);
   const ParsedScene parsed = parse_scene(text);
   if (!parsed.scene)
@@ -99,7 +99,7 @@ int write_new_scene(const NewArguments& arguments) {
   write_schema(path.parent_path() / schema_name, arguments.force);
   write_text(path.string(), text);
   print(fmt::format(
-      "{}: a copy of {}; {} estimates its cost, {} writes {}.h5\n", path.string(), arguments.from,
+      "{}: a copy of {}; {} estimates its cost, {} writes {}.h5\n", path.string(), arguments.scene,
       shell_words({command_line().front(), "check", operand(path.string())}),
       shell_words({command_line().front(), "run", operand(path.string())}), parsed.scene->name));
   return exit_ok;
@@ -112,7 +112,7 @@ void add_new(Command& app, int& code) {
   auto arguments = std::make_shared<NewArguments>();
   command.add_option("name", arguments->name, "Name of the scene: NAME.json is written").required();
   command
-      .add_option("--from", arguments->from,
+      .add_option("--from", arguments->scene,
                   "A shipped scene (default: quickstart); an unknown name lists them")
       .offers(scene_names());
   command.add_flag("--force", arguments->force, "Replace files that exist");

@@ -40,7 +40,7 @@ std::vector<ResultsFile> opened(const ReportArguments& arguments) {
 
 void write_figure_folder(const ReportArguments& arguments) {
   FigureFolder folder = arguments.figures;
-  folder.columns = arguments.columns == 2 ? JournalColumns::two : JournalColumns::one;
+  folder.columns = arguments.columns == 2 ? JournalColumns::two : JournalColumns::single;
   folder.force = arguments.force;
   print(write_figures(opened(arguments), folder, provenance_of_this_run("")));
 }
@@ -97,7 +97,7 @@ void add_report(Command& app, int& code) {
       .add_option("--columns", a.columns,
                   "Width of the figures: one column of a journal, 86 mm, or two, 178 mm (default: "
                   "1)")
-      .between(1, 2)
+      .limit(1, 2)
       .needs(figures);
   command.add_option("--sweep-point", a.figures.sweep_point,
                      "Figures of this one alone: its number, or NAME=VALUE of the sweep");

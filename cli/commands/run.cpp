@@ -125,11 +125,11 @@ ProgressStyle progress_style(const RunArguments& arguments) {
 }
 
 /// Derived tables do not outlive the data they were made of: names those that are gone.
-void say_which_tables_are_gone(const std::vector<std::string>& before,
-                               std::vector<std::string> after, const std::string& output) {
-  std::ranges::sort(after);
+void say_which_tables_are_gone(const std::vector<std::string>& tables_before,
+                               std::vector<std::string> tables_after, const std::string& output) {
+  std::ranges::sort(tables_after);
   std::vector<std::string> gone;
-  std::ranges::set_difference(before, after, std::back_inserter(gone));
+  std::ranges::set_difference(tables_before, tables_after, std::back_inserter(gone));
   if (gone.empty()) return;
   std::string lines;
   for (const std::string& name : gone) lines.append("\n  ").append(name);
@@ -144,8 +144,8 @@ void print_end(const ResultsFile& file, const RunSettings& settings) {
   print_curves(file);
   if (settings.shard.count > 1) return;  // jostle merge knows the other shards' files
   const auto realizations = file.realizations();
-  if (std::ranges::none_of(realizations, [](const RealizationSummary& one) {
-        return one.status == RealizationStatus::done;
+  if (std::ranges::none_of(realizations, [](const RealizationSummary& realization) {
+        return realization.status == RealizationStatus::done;
       })) {
     return;  // nothing to go on from
   }
@@ -185,7 +185,7 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
                     resume_command(arguments)));
     return exit_stopped;
   }
-  const std::vector<std::string> before = run.tables_before();
+  const std::vector<std::string> tables_before = run.tables_before();
   const ResultsFile file = run.close();
   std::vector<std::string> tables = file.table_names();
   if (settings.shard.count == 1) {
@@ -195,7 +195,7 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
     display.print_summary();
     tables.insert(tables.end(), stored.begin(), stored.end());
   }
-  say_which_tables_are_gone(before, tables, settings.output);
+  say_which_tables_are_gone(tables_before, tables, settings.output);
   if (!arguments.quiet) print_end(file, settings);
   const std::string failures = failure_lines(file);
   if (arguments.quiet) print_to_standard_error(failures);

@@ -40,13 +40,13 @@ struct SlurmArguments {
 };
 
 /// Checks a text of the script: it must be one line that shows what it holds.
-std::string one_line(const std::string& text, const char* what) {
+std::string one_line(const std::string& text, const char* option_name) {
   const std::string shown = printable_name(text);
   if (shown != text)
     throw BadInput(
         fmt::format("{} \"{}\" has a character that a line of a script cannot contain or "
                     "show: choose another name",
-                    what, shown));
+                    option_name, shown));
   return text;
 }
 
@@ -107,12 +107,12 @@ std::string estimate_line(const JobPlan& plan, const SlurmArguments& arguments,
 std::string layout_hint(const SceneCost& cost, const JobRequest& request, const JobPlan& plan) {
   const std::optional<JobRequest> better = better_layout(cost, request);
   if (!better) return "";
-  const JobPlan other = plan_jobs(cost, *better);
+  const JobPlan better_plan = plan_jobs(cost, *better);
   return finite_text(
       "CPUs have nothing to do for {:.0f} % of the reserved time. With --cpus {} --jobs {} the "
       "efficiency is {:.0f} %, and the longest task needs {}",
-      100 * (1 - plan.efficiency), better->cpus, better->shards, 100 * other.efficiency,
-      format_duration(other.longest_task));
+      100 * (1 - plan.efficiency), better->cpus, better->shards, 100 * better_plan.efficiency,
+      format_duration(better_plan.longest_task));
 }
 
 std::vector<std::string> warnings_of(const JobPlan& plan, const SlurmArguments& arguments,
@@ -226,7 +226,7 @@ void add_slurm(Command& app, int& code) {
       .positive_number();
   command.add_option("--cpus", arguments->cpus, "CPUs of a job: realizations at once")
       .required()
-      .between(1, most_cpus);
+      .limit(1, most_cpus);
   command.add_option("--jobs", arguments->jobs, "Shards, each a job and a results file")
       .required()
       .whole_from(1);

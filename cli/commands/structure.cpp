@@ -78,7 +78,7 @@ void require_output(const StructureArguments& arguments) {
 
 int measure_structure(const StructureArguments& arguments) {
   require_output(arguments);
-  const Provenance by = provenance_of_this_run("");
+  const Provenance provenance = provenance_of_this_run("");
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   const bool results = is_results_file(arguments.inputs.front());
   for (const std::string& input : arguments.inputs) {
@@ -105,8 +105,8 @@ int measure_structure(const StructureArguments& arguments) {
   }
   ShownTables shown(arguments.output);
   shown.show(tables, "");
-  if (results) shown.keep(arguments.inputs.front(), "structure", tables, by);
-  return shown.end(by);
+  if (results) shown.keep(arguments.inputs.front(), "structure", tables, provenance);
+  return shown.end(provenance);
 }
 
 }  // namespace

@@ -66,9 +66,9 @@ class WrittenFigures {
 void require_room_for(const FigureFolder& folder, const std::vector<FigureOfFile>& figures,
                       const std::vector<std::string>& inputs) {
   std::error_code fault;
-  for (const FigureOfFile& one : figures) {
+  for (const FigureOfFile& figure : figures) {
     for (const char* const kind : kinds) {
-      const std::string path = (fs::path(folder.path) / (one.figure.name + kind)).string();
+      const std::string path = (fs::path(folder.path) / (figure.figure.name + kind)).string();
       require_no_link(path);
       if (is_stream(path)) {
         throw BadInput(fmt::format(
@@ -92,10 +92,10 @@ void write_all(const FigureFolder& folder, const std::vector<FigureOfFile>& figu
   WrittenFigures written(folder.path);
   require_room_for(folder, figures, inputs);
   std::vector<Json> described;
-  for (const FigureOfFile& one : figures) {
-    const std::string& name = one.figure.name;
-    described.push_back(figure_json(one.figure, one.origin, Digits::all));
-    written.write(name + ".csv", figure_csv(one.figure));
+  for (const FigureOfFile& figure : figures) {
+    const std::string& name = figure.figure.name;
+    described.push_back(figure_json(figure.figure, figure.origin, Digits::all));
+    written.write(name + ".csv", figure_csv(figure.figure));
     written.write(name + ".json", described.back().dump() + "\n");
     written.write(name + ".py", figure_script(name, folder.columns));
   }
@@ -125,7 +125,7 @@ struct FiguresOfFiles {
 };
 
 FiguresOfFiles figures_of_files(std::span<const ResultsFile> files, const std::string& sweep_point,
-                                const Provenance& by) {
+                                const Provenance& provenance) {
   FiguresOfFiles all;
   std::set<std::string> words;  // names of files, where there are several
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -135,15 +135,17 @@ FiguresOfFiles figures_of_files(std::span<const ResultsFile> files, const std::s
     const auto points = sweep_point.empty() ? std::vector<std::uint32_t>{}
                                             : chosen_points(file.study(), sweep_point);
     DrawnFigures drawn = figures_of(file, points, files.size());
-    for (const std::string& one : drawn.left_out) all.left_out.push_back(name + ": " + one);
+    for (const std::string& name_left_out : drawn.left_out)
+      all.left_out.push_back(name + ": " + name_left_out);
     all.has_other_points = all.has_other_points || drawn.has_other_points;
     std::string word = file_word(fs::path(name).stem().string());
     if (!words.insert(word).second) word += fmt::format("-file-{}", i + 1);
     for (Figure& figure : drawn.figures) {
       if (files.size() > 1) figure.name = word + "-" + figure.name;
       all.figures.push_back(
-          {std::move(figure), fmt::format("Data: {}: {}. Drawn by jostle {} ({})", name,
-                                          study_words(file.study()), by.version, by.git_revision)});
+          {std::move(figure),
+           fmt::format("Data: {}: {}. Drawn by jostle {} ({})", name, study_words(file.study()),
+                       provenance.version, provenance.git_revision)});
     }
   }
   if (all.figures.empty()) {
@@ -155,32 +157,32 @@ FiguresOfFiles figures_of_files(std::span<const ResultsFile> files, const std::s
 }  // namespace
 
 std::string write_figures(std::span<const ResultsFile> files, const FigureFolder& folder,
-                          const Provenance& by) {
-  const FiguresOfFiles all = figures_of_files(files, folder.sweep_point, by);
+                          const Provenance& provenance) {
+  const FiguresOfFiles all = figures_of_files(files, folder.sweep_point, provenance);
   write_all(folder, all.figures, all.inputs);
   std::string text = written_text(folder, all.figures.size());
-  for (const std::string& one : all.left_out) text += one + "\n";
+  for (const std::string& line : all.left_out) text += line + "\n";
   if (all.has_other_points) text += "--sweep-point draws another one.\n";
   return text;
 }
 
 std::string figure_catalogue(std::span<const ResultsFile> files, const std::string& sweep_point,
-                             const Provenance& by) {
-  const FiguresOfFiles all = figures_of_files(files, sweep_point, by);
+                             const Provenance& provenance) {
+  const FiguresOfFiles all = figures_of_files(files, sweep_point, provenance);
   std::vector<Json> figures;
-  for (const FigureOfFile& one : all.figures) {
-    figures.push_back(figure_json(one.figure, one.origin, Digits::all));
+  for (const FigureOfFile& figure : all.figures) {
+    figures.push_back(figure_json(figure.figure, figure.origin, Digits::all));
   }
   return catalogue_json(figures, all.left_out).dump() + "\n";
 }
 
 std::string write_figures(const FittedCurve& measured, const std::string& input,
-                          const FigureFolder& folder, const Provenance& by) {
+                          const FigureFolder& folder, const Provenance& provenance) {
   std::vector<FigureOfFile> figures;
   for (Figure& figure : figures_of(measured).figures) {
     figures.push_back(
         {std::move(figure), fmt::format("Data: {}. Drawn by jostle {} ({})", measured.source.title,
-                                        by.version, by.git_revision)});
+                                        provenance.version, provenance.git_revision)});
   }
   write_all(folder, figures, {input});
   return written_text(folder, figures.size());

@@ -21,9 +21,9 @@
 namespace jostle::inline cli {
 
 bool keep_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
-                 const Provenance& by, const Patience& patience) {
+                 const Provenance& provenance, const Patience& patience) {
   try {
-    store_tables(path, group, tables, by, patience);
+    store_tables(path, group, tables, provenance, patience);
     return true;
   } catch (const ResultsError& error) {
     print_to_standard_error(fmt::format("jostle: the tables are not stored under /{}: {}\n", group,
@@ -54,11 +54,11 @@ void write_together(std::span<const ExportedFile> files) {
     if (is_stream(file.path)) write_text(file.path, file.text);
 }
 
-Json provenance_json(const Provenance& by) {
-  return {{"version", by.version},
-          {"git_revision", by.git_revision},
-          {"command_line", by.command_line},
-          {"started", by.started}};
+Json provenance_json(const Provenance& provenance) {
+  return {{"version", provenance.version},
+          {"git_revision", provenance.git_revision},
+          {"command_line", provenance.command_line},
+          {"started", provenance.started}};
 }
 
 }  // namespace jostle::inline cli

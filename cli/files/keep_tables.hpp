@@ -14,7 +14,7 @@ namespace jostle::inline cli {
 /// Stores the tables in `group` of a results file. Returns whether they are stored: otherwise
 /// standard error gives the reason. For tables that were printed.
 [[nodiscard]] bool keep_tables(const std::string& path, const std::string& group,
-                               std::span<const Table> tables, const Provenance& by,
+                               std::span<const Table> tables, const Provenance& provenance,
                                const Patience& patience);
 
 /// Puts the text into a file, whole or not at all, or into a pipe or a device. Throws ResultsError.
@@ -25,6 +25,6 @@ void write_text(const std::string& path, const std::string& text);
 void write_together(std::span<const ExportedFile> files);
 
 /// Who made what is printed.
-Json provenance_json(const Provenance& by);
+Json provenance_json(const Provenance& provenance);
 
 }  // namespace jostle::inline cli

@@ -75,17 +75,17 @@ class Surroundings {
     const fs::path package = program.parent_path().parent_path() / "lib/python3/dist-packages";
     const bool is_there =
         !program.empty() && fs::exists(package / "jostle/plot/__main__.py", fault);
-    for (char** one = environ; *one != nullptr; ++one) {
-      const std::string_view text = *one;
+    for (char** variable = environ; *variable != nullptr; ++variable) {
+      const std::string_view text = *variable;
       if (!(is_there && text.starts_with("PYTHONPATH="))) kept_.emplace_back(text);
     }
     if (is_there) {
       const char* const own = std::getenv("PYTHONPATH");
-      const std::string others = own == nullptr || *own == '\0' ? "" : ":" + std::string(own);
-      kept_.push_back("PYTHONPATH=" + package.string() + others);
+      const std::string inherited = own == nullptr || *own == '\0' ? "" : ":" + std::string(own);
+      kept_.push_back("PYTHONPATH=" + package.string() + inherited);
     }
     kept_.emplace_back("PYTHONDONTWRITEBYTECODE=1");
-    for (std::string& one : kept_) pointers_.push_back(one.data());
+    for (std::string& variable : kept_) pointers_.push_back(variable.data());
     pointers_.push_back(nullptr);
   }
   char* const* get() const { return pointers_.data(); }

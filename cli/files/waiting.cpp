@@ -11,8 +11,8 @@
 namespace jostle::inline cli {
 
 void add_wait(Command& command, Patience& patience) {
-  patience.tell = [](const std::string& what) {
-    print_to_standard_error(fmt::format("jostle: {}\n", printable(what)));
+  patience.tell = [](const std::string& message) {
+    print_to_standard_error(fmt::format("jostle: {}\n", printable(message)));
   };
   command
       .add_reader(

@@ -129,10 +129,10 @@ std::string bash_completion(const CommandText& program) {
     values += value_cases(program.name, command);
     // Options of a kind are known once it has been named.
     for (const CommandText& kind : command.commands) {
-      std::vector<OptionText> both = command.options;
-      both.insert(both.end(), kind.options.begin(), kind.options.end());
+      std::vector<OptionText> all_options = command.options;
+      all_options.insert(all_options.end(), kind.options.begin(), kind.options.end());
       options += fmt::format("    '{} {}') printf -- '{}\\n' ;;\n", command.name, kind.name,
-                             option_names(both));
+                             option_names(all_options));
       kinds += fmt::format("{}'{} {}'", kinds.empty() ? "" : " | ", command.name, kind.name);
     }
     options += fmt::format("    '{} ') printf -- '{}\\n' ;;\n", command.name,

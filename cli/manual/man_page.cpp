@@ -84,8 +84,8 @@ std::string synopsis(const std::string& name, const CommandText& command) {
 
 std::vector<std::string> paragraphs(const std::string& text) {
   std::vector<std::string> all(1);
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) {
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
     if (line.empty()) {
       all.emplace_back();
     } else {

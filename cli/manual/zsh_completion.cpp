@@ -25,7 +25,7 @@ std::string quoted(const std::string& text, const std::string& special) {
 }
 
 // "scene:_files -g ..." of what stands for a value.
-std::string action(const std::string& what, const Offer& offer) {
+std::string action(const std::string& title, const Offer& offer) {
   std::string does = " ";
   if (!offer.words.empty()) {
     does = fmt::format("({})", fmt::join(offer.words, " "));
@@ -34,7 +34,7 @@ std::string action(const std::string& what, const Offer& offer) {
   } else if (offer.files) {
     does = "_files";
   }
-  return quoted(what, ":") + ":" + does;
+  return quoted(title, ":") + ":" + does;
 }
 
 // '(-o --output)'{-o,--output}'[The results]:file:_files'
@@ -72,7 +72,9 @@ std::string command_case(const CommandText& command) {
   std::vector<std::string> seen;
   for (const CommandText& kind : command.commands) {
     for (const OptionText& option : kind.options) {
-      const auto known = [&](const OptionText& other) { return other.names == option.names; };
+      const auto known = [&](const OptionText& candidate) {
+        return candidate.names == option.names;
+      };
       if (std::ranges::any_of(command.options, known)) continue;
       if (std::ranges::find(seen, option.names.front()) != seen.end()) continue;
       seen.push_back(option.names.front());

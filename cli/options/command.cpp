@@ -82,12 +82,12 @@ void note_offer(CLI::Option& option, const char* kind, const std::vector<std::st
 /// Paragraphs as one line each, for a screen of any width; examples, which are indented, as they
 /// are.
 std::string filled(const std::string& text) {
-  std::string all, line, before;
-  for (std::istringstream lines(text); std::getline(lines, line); before = line) {
-    const auto of_paragraph = [](const std::string& one) {
-      return !one.empty() && one.front() != ' ' && !one.ends_with(':');
+  std::string all, line, previous;
+  for (std::istringstream lines(text); std::getline(lines, line); previous = line) {
+    const auto of_paragraph = [](const std::string& line_text) {
+      return !line_text.empty() && line_text.front() != ' ' && !line_text.ends_with(':');
     };
-    if (!all.empty()) all += of_paragraph(before) && of_paragraph(line) ? ' ' : '\n';
+    if (!all.empty()) all += of_paragraph(previous) && of_paragraph(line) ? ' ' : '\n';
     all += line;
   }
   return all;
@@ -110,17 +110,17 @@ Option& Option::separated_by(char character) {
   return *this;
 }
 
-Option& Option::excludes(const Option& other) {
-  option_->excludes(other.option_);
+Option& Option::excludes(const Option& option) {
+  option_->excludes(option.option_);
   return *this;
 }
 
-Option& Option::needs(const Option& other) {
-  option_->needs(other.option_);
+Option& Option::needs(const Option& option) {
+  option_->needs(option.option_);
   return *this;
 }
 
-Option& Option::between(int least, int most) {
+Option& Option::limit(int least, int most) {
   option_->check(CLI::Range(least, most));
   return *this;
 }
@@ -219,7 +219,7 @@ Option Command::add_reader(const std::string& name,
 }
 
 void Command::add_threads(int& threads, const std::string& description) {
-  add_option("--threads", threads, description).between(1, 4096).environment("JOSTLE_THREADS");
+  add_option("--threads", threads, description).limit(1, 4096).environment("JOSTLE_THREADS");
 }
 
 void Command::footer(const std::string& text) {

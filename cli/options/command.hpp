@@ -30,10 +30,10 @@ class Option {
   Option& required();
   Option& environment(const std::string& variable);
   Option& separated_by(char character);
-  Option& excludes(const Option& other);
-  Option& needs(const Option& other);
+  Option& excludes(const Option& option);
+  Option& needs(const Option& option);
 
-  Option& between(int least, int most);
+  Option& limit(int least, int most);
   Option& whole_from(std::uint64_t least);
   Option& positive_number();
   Option& one_of(const std::vector<std::string>& words);

@@ -42,11 +42,11 @@ struct Understood {
 };
 Understood understood(const CLI::App& app) {
   Understood all{app.get_name(), {}};
-  const CLI::App* here = &app;
-  while (!here->get_subcommands().empty()) {
-    here = here->get_subcommands().front();
-    all.command += " " + here->get_name();
-    for (const CLI::Option* option : here->get_options()) {
+  const CLI::App* level = &app;
+  while (!level->get_subcommands().empty()) {
+    level = level->get_subcommands().front();
+    all.command += " " + level->get_name();
+    for (const CLI::Option* option : level->get_options()) {
       for (const std::string& name : option->get_lnames()) all.options.push_back("--" + name);
     }
   }

@@ -72,7 +72,9 @@ std::string rows(const CostStudy& study, const CostOfObservable& cost, const Lay
 std::string failures(const CostStudy& study) {
   std::map<std::string, std::string> settings;
   for (std::size_t p = 0; p < study.settings().size(); ++p) {
-    const auto is_here = [p](const RealizationSummary& one) { return one.id.point == p; };
+    const auto is_here = [p](const RealizationSummary& realization) {
+      return realization.id.point == p;
+    };
     const auto n = std::ranges::count_if(study.failed(), is_here);
     if (n == 0) continue;
     std::string& names = settings[fmt::format(
@@ -81,7 +83,7 @@ std::string failures(const CostStudy& study) {
     names.append(names.empty() ? "" : ", ").append(study.settings()[p].name);
   }
   std::string text;
-  for (const auto& [what, names] : settings) text += what + "\n  (" + names + ")\n";
+  for (const auto& [heading, names] : settings) text += heading + "\n  (" + names + ")\n";
   return text;
 }
 
@@ -135,7 +137,7 @@ std::string growth_of_the_bias(const CostStudy& study, const CostOfObservable& c
                : "";
   }
   const Growth& growth = cost.growths.front();
-  const double now = cost.biases.front().bias, before = now - growth.change.bias;
+  const double now = cost.biases.front().bias, previous = now - growth.change.bias;
   const std::string text =
       fmt::format("Biases are those after {}. Since tap {} the scene's changed by {}: ", taps,
                   study.middle_tap(), over_replicates(growth.change));
@@ -144,15 +146,15 @@ std::string growth_of_the_bias(const CostStudy& study, const CostOfObservable& c
                               growth.detectable);
   }
   return text + finite_text("it {} with taps (p = {:.2g}, {} replicates); --taps takes more.\n",
-                            std::abs(now) > std::abs(before) ? "still grows" : "shrinks",
+                            std::abs(now) > std::abs(previous) ? "still grows" : "shrinks",
                             growth.tails, growth.change.pairs);
 }
 
 std::string other_windows_line(const CostOfObservable& cost) {
   std::string text;
-  for (const WindowEffect& one : cost.windows) {
+  for (const WindowEffect& effect : cost.windows) {
     text += text.empty() ? "Read through other windows, the same beds differ by " : "; ";
-    text += fmt::format("{} ({})", over_replicates(one.difference), one.name);
+    text += fmt::format("{} ({})", over_replicates(effect.difference), effect.name);
   }
   return text.empty() ? "" : text + ".\n";
 }
@@ -173,7 +175,7 @@ std::string advice(const CostStudy& study, const CostOfObservable& cost, double 
                                 : "half as much a step as its last step, or less");
   }
   double least = std::numeric_limits<double>::infinity();
-  for (const SettingCost& one : cost.limits) least = std::fmin(least, one.bias);
+  for (const SettingCost& setting : cost.limits) least = std::fmin(least, setting.bias);
   if (std::isinf(least)) {
     return wanted +
            ": nothing can be recommended. Steps of the ladder are not known to shrink, so that the "
@@ -209,11 +211,11 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
       "interval\n",
       cost.label.name, study.pilot_taps(), study.pilot_taps() == 1 ? "" : "s", study.replicates(),
       study.settings()[study.reference().last].name);
-  const std::string below =
+  const std::string footer =
       "front: no other setting has both a smaller |bias| + error and a smaller time.\n" +
       shortfall_of_the_reference(cost) + doubt_of_the_reference(study) + failures(study) +
       growth_of_the_bias(study, cost) + other_windows_line(cost);
-  return wrapped(head, layout.width) + rows(study, cost, layout) + wrapped(below, layout.width);
+  return wrapped(head, layout.width) + rows(study, cost, layout) + wrapped(footer, layout.width);
 }
 
 }  // namespace jostle::inline cli

@@ -49,18 +49,18 @@ class Drawing {
  public:
   Drawing(std::size_t columns, std::size_t lines, Glyphs glyphs)
       : columns_(columns), lines_(lines), glyphs_(glyphs) {
-    if (glyphs == Glyphs::ascii) across_ = down_ = 1;
-    dots_.resize(across() * down());
+    if (glyphs == Glyphs::ascii) across_ = dots_per_line_ = 1;
+    dots_.resize(across() * dot_rows());
   }
 
   std::size_t across() const { return columns_ * across_; }
-  std::size_t down() const { return lines_ * down_; }
+  std::size_t dot_rows() const { return lines_ * dots_per_line_; }
   std::size_t dots_a_column() const { return across_; }
 
   /// A dot in a column of dots, at a height from 0 to 1.
   void set(std::size_t x, double height) {
     const auto y = static_cast<std::size_t>(
-        std::lround((1 - std::clamp(height, 0.0, 1.0)) * static_cast<double>(down() - 1)));
+        std::lround((1 - std::clamp(height, 0.0, 1.0)) * static_cast<double>(dot_rows() - 1)));
     dots_[y * across() + x] = 1;
   }
 
@@ -75,9 +75,10 @@ class Drawing {
     static constexpr std::uint32_t bits[dots_down][dots_across] = {
         {0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
     std::uint32_t set = 0;
-    for (std::size_t y = 0; y < down_; ++y) {
+    for (std::size_t y = 0; y < dots_per_line_; ++y) {
       for (std::size_t x = 0; x < across_; ++x) {
-        if (dots_[(line * down_ + y) * across() + column * across_ + x] != 0) set |= bits[y][x];
+        if (dots_[(line * dots_per_line_ + y) * across() + column * across_ + x] != 0)
+          set |= bits[y][x];
       }
     }
     if (set == 0) return " ";
@@ -86,25 +87,25 @@ class Drawing {
 
   std::size_t columns_, lines_;
   Glyphs glyphs_;
-  std::size_t across_ = dots_across, down_ = dots_down;
+  std::size_t across_ = dots_across, dots_per_line_ = dots_down;
   std::vector<char> dots_;
 };
 
 /// The curve as straight lines between its taps, in columns of dots from `first` on.
 void draw(Drawing& drawing, std::span<const double> values, const Range& range, std::size_t first) {
   const double height = range.high > range.low ? range.high - range.low : 1;
-  const auto at = [&](double value) { return (value - range.low) / height; };
+  const auto height_of = [&](double value) { return (value - range.low) / height; };
   const auto span = static_cast<double>(drawing.across() - 1 - first);
   const auto last = static_cast<double>(values.size() - 1);
-  if (!std::isnan(values[0])) drawing.set(0, at(values[0]));
+  if (!std::isnan(values[0])) drawing.set(0, height_of(values[0]));
   double x_before = -1, y_before = 0;
   for (std::size_t tap = 1; tap < values.size(); ++tap) {
     if (std::isnan(values[tap])) continue;
-    const double x = place_of(static_cast<double>(tap), last) * span, y = at(values[tap]);
+    const double x = place_of(static_cast<double>(tap), last) * span, y = height_of(values[tap]);
     if (x_before >= 0) {
-      for (double between = std::ceil(x_before); between < x; ++between) {
-        const double share = x > x_before ? (between - x_before) / (x - x_before) : 0;
-        drawing.set(first + static_cast<std::size_t>(between), y_before + share * (y - y_before));
+      for (double column = std::ceil(x_before); column < x; ++column) {
+        const double share = x > x_before ? (column - x_before) / (x - x_before) : 0;
+        drawing.set(first + static_cast<std::size_t>(column), y_before + share * (y - y_before));
       }
     }
     drawing.set(first + static_cast<std::size_t>(std::lround(x)), y);
@@ -119,9 +120,9 @@ std::string axis_of_taps(std::size_t columns, std::size_t first, std::size_t las
   const auto put = [&](std::size_t centre, const std::string& text) {
     const std::size_t half = text.size() / 2;
     const std::size_t start = std::min(centre > half ? centre - half : 0, columns - text.size());
-    const std::size_t from = start > 0 ? start - 1 : 0;
-    const std::size_t to = std::min(start + text.size() + 1, columns);
-    if (axis.substr(from, to - from).find_first_not_of(' ') != std::string::npos) return;
+    const std::size_t begin = start > 0 ? start - 1 : 0;
+    const std::size_t end = std::min(start + text.size() + 1, columns);
+    if (axis.substr(begin, end - begin).find_first_not_of(' ') != std::string::npos) return;
     axis.replace(start, text.size(), text);
   };
   put(0, "0");
@@ -135,8 +136,8 @@ std::string axis_of_taps(std::size_t columns, std::size_t first, std::size_t las
 }
 
 std::size_t chosen_column(const std::vector<EnsembleSeries>& columns) {
-  const auto is_fraction = [](const EnsembleSeries& one) {
-    return one.label.shown == Shown::spread && one.label.name.ends_with("fraction");
+  const auto is_fraction = [](const EnsembleSeries& series) {
+    return series.label.shown == Shown::spread && series.label.name.ends_with("fraction");
   };
   const auto found = std::ranges::find_if(columns, is_fraction);
   return found == columns.end() ? 0 : static_cast<std::size_t>(found - columns.begin());

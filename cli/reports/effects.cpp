@@ -78,7 +78,7 @@ Json with_swept(Json scene) {
 
 std::string effects_text(const Json& scene) {
   const Json resolved = with_swept(scene);
-  std::string on = "effects\n", off;
+  std::string enabled = "effects\n", disabled;
   for (const char* part :
        {"container", "start", "protocol", "engine", "relax", "observe", "snapshots", "motion",
         "sweep", "until", "fits", "analyse", "structure"}) {
@@ -89,12 +89,12 @@ std::string effects_text(const Json& scene) {
         std::string_view(part) == "engine" || std::string_view(part) == "relax";
     if (is_of_engine && value.empty()) continue;
     if (is_on(part, value)) {
-      on += fmt::format("  {:<11}{}\n", part, in_words(value));
+      enabled += fmt::format("  {:<11}{}\n", part, in_words(value));
     } else {
-      off += fmt::format("{}{}", off.empty() ? "" : ", ", part);
+      disabled += fmt::format("{}{}", disabled.empty() ? "" : ", ", part);
     }
   }
-  return off.empty() ? on : on + fmt::format("  {:<11}{}\n", "off", off);
+  return disabled.empty() ? enabled : enabled + fmt::format("  {:<11}{}\n", "off", disabled);
 }
 
 }  // namespace jostle::inline cli

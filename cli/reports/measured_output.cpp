@@ -41,7 +41,7 @@ void add_measured_output(Command& command, MeasuredOutput& output) {
       .add_option("--columns", output.columns,
                   "Width of the figures: one column of a journal, 86 mm, or two, 178 mm (default: "
                   "1)")
-      .between(1, 2)
+      .limit(1, 2)
       .needs(figures);
   command
       .add_option("--page", output.page, "Page of the measured curve and its fits, for a browser")
@@ -55,16 +55,16 @@ void require_measured_output(const MeasuredOutput& output, const std::string& in
 }
 
 std::string write_measured(const MeasuredOutput& output, const FittedCurve& fitted,
-                           const std::string& input, bool force, const Provenance& by) {
+                           const std::string& input, bool force, const Provenance& provenance) {
   std::string text;
   if (!output.figures.path.empty()) {
     FigureFolder folder = output.figures;
-    folder.columns = output.columns == 2 ? JournalColumns::two : JournalColumns::one;
+    folder.columns = output.columns == 2 ? JournalColumns::two : JournalColumns::single;
     folder.force = force;
-    text += write_figures(fitted, input, folder, by);
+    text += write_figures(fitted, input, folder, provenance);
   }
   if (!output.page.empty()) {
-    write_text(output.page, measured_page(fitted, drawn_figures(fitted), by));
+    write_text(output.page, measured_page(fitted, drawn_figures(fitted), provenance));
     text += fmt::format("{}: open it in a browser\n", output.page);
   }
   return text;

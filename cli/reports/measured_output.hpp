@@ -25,6 +25,6 @@ void require_measured_output(const MeasuredOutput& output, const std::string& in
 
 /// Writes the requested outputs of a curve with a fit. Returns a description for people.
 std::string write_measured(const MeasuredOutput& output, const FittedCurve& fitted,
-                           const std::string& input, bool force, const Provenance& by);
+                           const std::string& input, bool force, const Provenance& provenance);
 
 }  // namespace jostle::inline cli

@@ -39,8 +39,8 @@ std::string fraction_of(const StudyPoint& point) {
 /// Returns the first observable of the point that is named under a key "observable".
 std::optional<std::string> named_in(const Json& part, const StudyPoint& point) {
   if (part.is_array()) {
-    for (const Json& one : part.elements())
-      if (auto found = named_in(one, point)) return found;
+    for (const Json& element : part.elements())
+      if (auto found = named_in(element, point)) return found;
   }
   if (!part.is_object()) return std::nullopt;
   for (const auto& [key, member] : part.members()) {

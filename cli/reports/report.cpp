@@ -30,8 +30,9 @@ std::string sentence(std::string text, const std::string& number) {
 /// How often it happened, of the taps at which the engine did any work, the first column that it
 /// shows: a start that is not relaxed has none.
 std::string count_line(const EnsembleSeries& happened, const PointSeries& series) {
-  const auto work = std::ranges::find(series.columns, Shown::mean,
-                                      [](const EnsembleSeries& one) { return one.label.shown; });
+  const auto work = std::ranges::find(
+      series.columns, Shown::mean,
+      [](const EnsembleSeries& ensemble_series) { return ensemble_series.label.shown; });
   double taps = 0, times = 0;
   for (std::size_t tap = 0; tap < happened.count.size(); ++tap) {
     if (work != series.columns.end() && !(work->mean[tap] > 0)) continue;
@@ -66,8 +67,9 @@ std::string sentences(const PointSeries& series) {
 /// A bed that is tapped again before it has come back grows without end.
 std::string growth_line(const PointSeries& series) {
   constexpr double most_growth = 10;  // the papers' beds change by a tenth
-  const auto height = std::ranges::find(series.columns, "mean_height",
-                                        [](const EnsembleSeries& one) { return one.label.name; });
+  const auto height = std::ranges::find(
+      series.columns, "mean_height",
+      [](const EnsembleSeries& ensemble_series) { return ensemble_series.label.name; });
   if (height == series.columns.end()) return "";
   const double first = height->mean[0], last = height->mean[series.reached.size() - 1];
   if (!(last > most_growth * first)) return "";
@@ -88,9 +90,9 @@ std::string fitting_line(const ResultsFile& file, std::uint32_t point) {
     }
   }
   if (!(mean.spheres_moved > 0)) return "";
-  const auto change = [](double before, double after) -> std::string {
-    return std::isfinite(before) && std::isfinite(after)
-               ? finite_text("{:.4f} -> {:.4f}", before, after)
+  const auto change = [](double old_value, double new_value) -> std::string {
+    return std::isfinite(old_value) && std::isfinite(new_value)
+               ? finite_text("{:.4f} -> {:.4f}", old_value, new_value)
                : "not known, the bed is too shallow for it";
   };
   return finite_text(
@@ -141,23 +143,23 @@ std::string further_failures(std::size_t n) {
 std::string failures_of(const StudyPoint& point, std::span<const RealizationSummary> realizations) {
   std::string lines;
   std::size_t n = 0;
-  for (const auto& one : realizations) {
-    if (one.status == RealizationStatus::failed && ++n <= most_failures)
-      lines += failure_line(one, point);
+  for (const auto& realization : realizations) {
+    if (realization.status == RealizationStatus::failed && ++n <= most_failures)
+      lines += failure_line(realization, point);
   }
   return lines + further_failures(n);
 }
 
 PointCost cost_of(const ResultsFile& file, std::span<const RealizationSummary> realizations) {
   PointCost cost;
-  for (const auto& one : realizations) {
-    cost.work += one.work;
-    if (one.status == RealizationStatus::done) {
+  for (const auto& realization : realizations) {
+    cost.work += realization.work;
+    if (realization.status == RealizationStatus::done) {
       ++cost.done;
-    } else if (one.status == RealizationStatus::failed) {
+    } else if (realization.status == RealizationStatus::failed) {
       ++cost.failed;
-    } else if (in_share(file.shard(), file.study(), one.id)) {
-      ++(one.status == RealizationStatus::missing ? cost.missing : cost.unfinished);
+    } else if (in_share(file.shard(), file.study(), realization.id)) {
+      ++(realization.status == RealizationStatus::missing ? cost.missing : cost.unfinished);
     }
   }
   return cost;
@@ -181,20 +183,21 @@ std::string point_report(const ResultsFile& file, std::uint32_t point,
 /// "bottom_fraction 0.5413(20) at tap 0, 0.5591(13) at tap 100".
 std::string change_of(const PointSeries& series) {
   if (series.reached.empty()) return "";
-  const auto named = [](const EnsembleSeries& one) {
-    return one.label.shown == Shown::spread && one.label.name.ends_with("fraction");
+  const auto named = [](const EnsembleSeries& ensemble_series) {
+    return ensemble_series.label.shown == Shown::spread &&
+           ensemble_series.label.name.ends_with("fraction");
   };
   auto shown = std::ranges::find_if(series.columns, named);
   if (shown == series.columns.end()) shown = series.columns.begin();
   if (shown == series.columns.end()) return "";
   const std::size_t last = series.reached.size() - 1;
   const bool as_many = shown->count[0] == shown->count[last];
-  const auto at = [&](std::size_t tap) {
+  const auto mean_at = [&](std::size_t tap) {
     return fmt::format("{} at tap {}{}", mean_text(*shown, tap), tap,
                        as_many ? "" : fmt::format(" (M = {})", shown->count[tap]));
   };
-  std::string text = fmt::format("; {} {}", shown->label.name, at(0));
-  return last == 0 ? text : text + ", " + at(last);
+  std::string text = fmt::format("; {} {}", shown->label.name, mean_at(0));
+  return last == 0 ? text : text + ", " + mean_at(last);
 }
 
 std::string verdict_line(const ResultsFile& file,
@@ -238,10 +241,11 @@ std::string legend(const Layout& layout) {
 std::string failure_lines(const ResultsFile& file) {
   std::string lines;
   std::size_t n = 0;
-  for (const RealizationSummary& one : file.realizations()) {
-    if (one.status != RealizationStatus::failed || ++n > most_failures) continue;
-    if (file.study().points.size() > 1) lines += fmt::format("sweep point {}, ", one.id.point);
-    lines += failure_line(one, file.study().points[one.id.point]);
+  for (const RealizationSummary& realization : file.realizations()) {
+    if (realization.status != RealizationStatus::failed || ++n > most_failures) continue;
+    if (file.study().points.size() > 1)
+      lines += fmt::format("sweep point {}, ", realization.id.point);
+    lines += failure_line(realization, file.study().points[realization.id.point]);
   }
   return lines + further_failures(n);
 }

@@ -39,10 +39,10 @@ std::optional<fs::path> common_folder(const ShardsStatus& study) {
 
 /// The number behind "key=" in the script's line of variables.
 std::optional<std::uint32_t> variable(const std::string& script, const std::string& key) {
-  for (const char* const before : {"\n", " "}) {
-    const std::size_t at = script.find(before + key + "=");
-    if (at == std::string::npos) continue;
-    const char* const digits = script.data() + at + key.size() + 2;
+  for (const char* const separator : {"\n", " "}) {
+    const std::size_t index = script.find(separator + key + "=");
+    if (index == std::string::npos) continue;
+    const char* const digits = script.data() + index + key.size() + 2;
     std::uint32_t number = 0;
     const auto [end, error] = std::from_chars(digits, script.data() + script.size(), number);
     if (error == std::errc{} && number > 0) return number;
@@ -56,7 +56,7 @@ bool is_open(const ShardStatus& shard, const ShardsStatus& study) {
   return shard.state == ShardState::stopped || shard.state == ShardState::dead;
 }
 
-std::string who(const LockOwner& owner) {
+std::string owner_name(const LockOwner& owner) {
   const std::string process = fmt::format("process {} on {}", owner.pid, owner.host);
   return owner.job ? fmt::format("job {}, {}", owner.job->name, process) : process;
 }
@@ -64,7 +64,7 @@ std::string who(const LockOwner& owner) {
 /// Lists a few shards with their states.
 std::string remark(const ShardStatus& shard) {
   if (!shard.owner) return "";
-  return who(*shard.owner) + (shard.state == ShardState::dead ? ", has ended" : "");
+  return owner_name(*shard.owner) + (shard.state == ShardState::dead ? ", has ended" : "");
 }
 
 std::string state_line(const ShardsStatus& study, ShardState state) {
@@ -176,19 +176,19 @@ Json status_json(const ShardsStatus& study, const std::vector<std::string>& redo
   const Sums sums = sums_of(study);
   Json shards = Json::array(), commands = Json::array(), twice = Json::array();
   for (const ShardStatus& shard : study.shards) {
-    Json one{{"index", std::uint64_t{shard.index}},
-             {"state", name_of(shard.state)},
-             {"realizations", shard.realizations},
-             {"done", shard.done},
-             {"failed", shard.failed},
-             {"taps_recorded", shard.taps},
-             {"taps", shard.all_taps}};
-    if (!shard.path.empty()) one["file"] = shard.path;
+    Json shard_json{{"index", std::uint64_t{shard.index}},
+                    {"state", name_of(shard.state)},
+                    {"realizations", shard.realizations},
+                    {"done", shard.done},
+                    {"failed", shard.failed},
+                    {"taps_recorded", shard.taps},
+                    {"taps", shard.all_taps}};
+    if (!shard.path.empty()) shard_json["file"] = shard.path;
     if (shard.owner) {
-      one["host"] = shard.owner->host;
-      if (shard.owner->job) one["job"] = shard.owner->job->name;
+      shard_json["host"] = shard.owner->host;
+      if (shard.owner->job) shard_json["job"] = shard.owner->job->name;
     }
-    shards.push_back(one);
+    shards.push_back(shard_json);
   }
   for (const std::string& command : redo) commands.push_back(command);
   for (const std::string& path : study.twice) twice.push_back(path);

@@ -76,11 +76,12 @@ void make_room(std::vector<ShownColumn>& columns, std::size_t width) {
 PointSeries point_series(const ResultsFile& file, std::uint32_t point,
                          std::span<const RealizationSummary> realizations) {
   PointSeries series{file.ensemble(point), {}};
-  for (const RealizationSummary& one : realizations) {
-    if (in_share(file.shard(), file.study(), one.id)) ++series.planned;
-    if (one.rows == 0) continue;
-    series.reached.resize(std::max(series.reached.size(), static_cast<std::size_t>(one.rows)));
-    ++series.reached[one.rows - 1];  // for now, of those that end here
+  for (const RealizationSummary& realization : realizations) {
+    if (in_share(file.shard(), file.study(), realization.id)) ++series.planned;
+    if (realization.rows == 0) continue;
+    series.reached.resize(
+        std::max(series.reached.size(), static_cast<std::size_t>(realization.rows)));
+    ++series.reached[realization.rows - 1];  // for now, of those that end here
   }
   for (std::size_t tap = series.reached.size(); tap-- > 1;) {
     series.reached[tap - 1] += series.reached[tap];
@@ -100,8 +101,8 @@ std::string tap_table(const PointSeries& series, const Layout& layout) {
         shown_column("M", taps, [&](std::uint64_t tap) { return fmt::to_string(reached[tap]); }));
   }
   const std::size_t keys = columns.size();
-  for (const EnsembleSeries& one : series.columns) {
-    for (ShownColumn& column : shown_columns(one, taps, layout.columns))
+  for (const EnsembleSeries& ensemble_series : series.columns) {
+    for (ShownColumn& column : shown_columns(ensemble_series, taps, layout.columns))
       columns.push_back(std::move(column));
   }
   make_room(columns, layout.table_width());

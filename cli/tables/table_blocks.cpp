@@ -16,8 +16,8 @@ const Quantity& axis_named(const Table& table, const std::string& name) {
 std::vector<Block> blocks_of(const Table& table) {
   std::vector<Block> blocks;
   for (const Quantity& quantity : table.quantities) {
-    const auto same = [&](const Block& block) { return block.axes == quantity.axes; };
-    const auto found = std::ranges::find_if(blocks, same);
+    const auto is_same = [&](const Block& block) { return block.axes == quantity.axes; };
+    const auto found = std::ranges::find_if(blocks, is_same);
     if (found == blocks.end()) {
       blocks.push_back({quantity.axes, {&quantity}});
     } else {

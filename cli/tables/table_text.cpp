@@ -57,24 +57,24 @@ double number_at(const Quantity* quantity, std::size_t index) {
   return numbers ? numbers->at(index) : std::nan("");
 }
 
-const Quantity* beside(const Quantity& quantity, const Block& block, const char* ending) {
-  for (const Quantity* other : block.columns) {
-    if (other->name == quantity.name + ending) return other;
+const Quantity* companion(const Quantity& quantity, const Block& block, const char* ending) {
+  for (const Quantity* column : block.columns) {
+    if (column->name == quantity.name + ending) return column;
   }
   return nullptr;
 }
 
 bool has_interval(const Quantity& quantity, const Block& block) {
-  return beside(quantity, block, "_low_95") != nullptr &&
-         beside(quantity, block, "_high_95") != nullptr;
+  return companion(quantity, block, "_low_95") != nullptr &&
+         companion(quantity, block, "_high_95") != nullptr;
 }
 
 bool is_shown_beside(const Quantity& quantity, const Block& block) {
-  return std::ranges::any_of(block.columns, [&](const Quantity* other) {
-    if (beside(*other, block, "_half_width") == &quantity) return true;
-    return has_interval(*other, block) &&
+  return std::ranges::any_of(block.columns, [&](const Quantity* column) {
+    if (companion(*column, block, "_half_width") == &quantity) return true;
+    return has_interval(*column, block) &&
            std::ranges::any_of(interval_endings, [&](const char* ending) {
-             return beside(*other, block, ending) == &quantity;
+             return companion(*column, block, ending) == &quantity;
            });
   });
 }
@@ -83,14 +83,14 @@ bool is_shown_beside(const Quantity& quantity, const Block& block) {
 /// "2.10(40)".
 std::string shown(const Quantity& quantity, const Block& block, std::size_t index) {
   if (has_interval(quantity, block)) {
-    const double low = number_at(beside(quantity, block, "_low_95"), index);
-    const double high = number_at(beside(quantity, block, "_high_95"), index);
+    const double low = number_at(companion(quantity, block, "_low_95"), index);
+    const double high = number_at(companion(quantity, block, "_high_95"), index);
     if (!std::isfinite(low) || !std::isfinite(high)) return shown_cell(quantity, index);
     return fmt::format("{} ({})", number_text(number_at(&quantity, index), 4),
                        limits_text(low, high, 4));
   }
   const auto* numbers = std::get_if<std::vector<double>>(&quantity.values);
-  const double width = number_at(beside(quantity, block, "_half_width"), index);
+  const double width = number_at(companion(quantity, block, "_half_width"), index);
   if (!numbers || !(width > 0)) return shown_cell(quantity, index);
   return value_with_error(numbers->at(index), width, scale_of(*numbers));
 }
@@ -102,8 +102,8 @@ bool is_empty(const Quantity& quantity) {
 }
 
 /// "  --wide shows also     a, b".
-std::string named(const char* what, const std::vector<std::string>& names) {
-  return names.empty() ? "" : fmt::format("  {:<22} {}\n", what, joined(names, ", "));
+std::string named(const char* label, const std::vector<std::string>& names) {
+  return names.empty() ? "" : fmt::format("  {:<22} {}\n", label, joined(names, ", "));
 }
 
 bool has_units(const Quantity& quantity) {
@@ -153,14 +153,14 @@ std::string sentences(const Table& table, const Block& block, const Quantity& qu
   std::vector<std::string> order;
   std::map<std::string, std::string> rows;
   for (std::size_t row = 0; row < texts.size(); ++row) {
-    std::string at;
+    std::string coordinates;
     for (std::size_t i = 0; const std::size_t index : place(table, block, row)) {
-      at.append(at.empty() ? "" : "/")
+      coordinates.append(coordinates.empty() ? "" : "/")
           .append(shown_cell(axis_named(table, block.axes[i++]), index));
     }
     std::string& listed = rows[texts[row]];
     if (listed.empty()) order.push_back(texts[row]);
-    listed.append(listed.empty() ? "" : ", ").append(at);
+    listed.append(listed.empty() ? "" : ", ").append(coordinates);
   }
   std::string text = fmt::format("  {} by {}\n", quantity.name, joined(block.axes, "/"));
   for (const std::string& said : order) {
@@ -177,9 +177,10 @@ std::size_t characters(const Quantity& quantity) {
 }
 
 /// Names the omitted columns, and where to find them.
-std::string left_out(const Block& block, const char* where, const std::vector<std::string>& names) {
+std::string left_out(const Block& block, const char* place_text,
+                     const std::vector<std::string>& names) {
   return fmt::format("  {:<22} {}{}\n",
-                     counted(block.n_rows(), "row") + " of " + joined(block.axes, ", "), where,
+                     counted(block.n_rows(), "row") + " of " + joined(block.axes, ", "), place_text,
                      joined(names, ", "));
 }
 
@@ -248,7 +249,7 @@ class BlockText {
     for (const std::string& axis : block_.axes) add(axis_named(table_, axis));
     for (const Quantity* quantity : numbers_) add(*quantity);
     std::string text;
-    for (const auto& [unit, of] : names) text += named(unit.c_str(), of);
+    for (const auto& [unit, quantity_names] : names) text += named(unit.c_str(), quantity_names);
     return text;
   }
 

@@ -78,12 +78,12 @@ StoringDisplay::~StoringDisplay() {
   if (shown_ && style_ == ProgressStyle::live) print_to_standard_error_exactly(clear_line);
 }
 
-void StoringDisplay::show(std::uint64_t done, std::uint64_t of) {
+void StoringDisplay::show(std::uint64_t done, std::uint64_t total) {
   const auto now = Clock::now();
   if (style_ == ProgressStyle::none || now - last_ < interval_of(style_)) return;
   last_ = now;
   shown_ = true;
-  const std::string line = fmt::format("writing the results: {}/{} realizations", done, of);
+  const std::string line = fmt::format("writing the results: {}/{} realizations", done, total);
   const bool live = style_ == ProgressStyle::live;
   print_to_standard_error_exactly(live ? clear_line + line : "jostle: " + line + "\n");
 }

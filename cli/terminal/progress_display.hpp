@@ -43,7 +43,7 @@ class StoringDisplay {
   StoringDisplay& operator=(const StoringDisplay&) = delete;
 
   /// Realizations that are written, of how many. A line where the last is old enough.
-  void show(std::uint64_t done, std::uint64_t of);
+  void show(std::uint64_t done, std::uint64_t total);
 
  private:
   ProgressStyle style_;

@@ -27,8 +27,8 @@ void RunDisplay::computed() {
   storing_.emplace(style_);
 }
 
-void RunDisplay::storing(std::uint64_t done, std::uint64_t of) {
-  if (storing_) storing_->show(done, of);
+void RunDisplay::storing(std::uint64_t done, std::uint64_t total) {
+  if (storing_) storing_->show(done, total);
 }
 
 void RunDisplay::compared(const PrecisionStatus& status) {

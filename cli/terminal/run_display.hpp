@@ -18,7 +18,7 @@ class RunDisplay : public RunObserver {
   void computing(const Progress& progress, const WorkAhead& ahead, std::uint64_t pending,
                  std::uint64_t all) override;
   void computed() override;
-  void storing(std::uint64_t done, std::uint64_t of) override;
+  void storing(std::uint64_t done, std::uint64_t total) override;
   void stored() override { storing_.reset(); }
   void compared(const PrecisionStatus& status) override;
 

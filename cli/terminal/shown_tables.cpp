@@ -58,14 +58,14 @@ void ShownTables::show(std::span<const Table> tables, const std::string& input) 
 }
 
 void ShownTables::keep(const std::string& path, const std::string& group,
-                       std::span<const Table> tables, const Provenance& by) {
-  if (output_.stored() && !keep_tables(path, group, tables, by, output_.patience))
+                       std::span<const Table> tables, const Provenance& provenance) {
+  if (output_.stored() && !keep_tables(path, group, tables, provenance, output_.patience))
     all_stored_ = false;
 }
 
-int ShownTables::end(const Provenance& by) const {
+int ShownTables::end(const Provenance& provenance) const {
   if (output_.json) {
-    const Json object = {{"tables", listed_}, {"provenance", provenance_json(by)}};
+    const Json object = {{"tables", listed_}, {"provenance", provenance_json(provenance)}};
     print_json(object);
   }
   if (!output_.csv.empty()) write_text(output_.csv, csv_);

@@ -42,9 +42,9 @@ class ShownTables {
   void show(std::span<const Table> tables, const std::string& input);
   /// Stores tables that were shown in the results file they were made of, where that is asked for.
   void keep(const std::string& path, const std::string& group, std::span<const Table> tables,
-            const Provenance& by);
+            const Provenance& provenance);
   /// Returns the exit code: bad input where no table was made, broken where some are not stored.
-  int end(const Provenance& by) const;
+  int end(const Provenance& provenance) const;
 
  private:
   void print_once_any_is_made(const std::string& text);

@@ -13,9 +13,9 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_alw
 
 constexpr int stop_signals[] = {SIGINT, SIGTERM, SIGUSR1};
 
-void ask(int by) {
+void ask(int cause) {
   int nobody = 0;
-  asked_by.compare_exchange_strong(nobody, by);
+  asked_by.compare_exchange_strong(nobody, cause);
   stop_asked = true;
 }
 

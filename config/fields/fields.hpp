@@ -48,10 +48,10 @@ void add_keys(const Field<Part, Value, Form>& field, std::vector<std::string>& k
   keys.emplace_back(field.key);
 }
 template <class Part, class Value, class Form>
-void read_field(const Field<Part, Value, Form>& field, const Reader& in, Part& part) {
-  const auto member = in.find(std::string(field.key));
+void read_field(const Field<Part, Value, Form>& field, const Reader& reader, Part& part) {
+  const auto member = reader.find(std::string(field.key));
   if (!member) {
-    if (!field.notes.required.empty()) in.missing(field.key, field.notes.required);
+    if (!field.notes.required.empty()) reader.missing(field.key, field.notes.required);
     return;
   }
   if constexpr (is_optional<Value> && !has_absence<Form>) {
@@ -63,17 +63,17 @@ void read_field(const Field<Part, Value, Form>& field, const Reader& in, Part& p
   }
 }
 template <class Part, class Value, class Form>
-void write_field(const Field<Part, Value, Form>& field, const Part& part, Json& out) {
+void write_field(const Field<Part, Value, Form>& field, const Part& part, Json& json) {
   const Value& value = part.*field.member;
   if constexpr (is_optional<Value> && !has_absence<Form>) {
-    if (value) out[field.key] = written_value(field.form, *value);
+    if (value) json[field.key] = written_value(field.form, *value);
   } else {
     if (field.notes.unless_default && value == Part{}.*field.member) return;
-    out[field.key] = written_value(field.form, value);
+    json[field.key] = written_value(field.form, value);
   }
 }
 template <class Part, class Value, class Form>
-void describe_field(const Field<Part, Value, Form>& field, ObjectSchema& out,
+void describe_field(const Field<Part, Value, Form>& field, ObjectSchema& schema,
                     Definitions& definitions) {
   std::optional<Json> otherwise;
   if constexpr (!is_optional<Value> || has_absence<Form>) {
@@ -83,10 +83,10 @@ void describe_field(const Field<Part, Value, Form>& field, ObjectSchema& out,
     if (field.notes.unless_default && (*otherwise == Json("") || *otherwise == Json::object()))
       otherwise.reset();
   }
-  out.properties[field.key] =
+  schema.properties[field.key] =
       described_as(value_schema(field.form, definitions), field.notes.title,
                    sentence_of(field.text, unit_of(field.form)), otherwise, field.notes.examples);
-  if (!field.notes.required.empty()) out.required.emplace_back(field.key);
+  if (!field.notes.required.empty()) schema.required.emplace_back(field.key);
 }
 
 template <class Part, class Inner>
@@ -94,18 +94,18 @@ void add_keys(const Inlined<Part, Inner>&, std::vector<std::string>& keys) {
   std::apply([&](const auto&... field) { (add_keys(field, keys), ...); }, Inner::fields());
 }
 template <class Part, class Inner>
-void read_field(const Inlined<Part, Inner>& inner, const Reader& in, Part& part) {
-  std::apply([&](const auto&... field) { (read_field(field, in, part.*inner.member), ...); },
+void read_field(const Inlined<Part, Inner>& inner, const Reader& reader, Part& part) {
+  std::apply([&](const auto&... field) { (read_field(field, reader, part.*inner.member), ...); },
              Inner::fields());
 }
 template <class Part, class Inner>
-void write_field(const Inlined<Part, Inner>& inner, const Part& part, Json& out) {
-  std::apply([&](const auto&... field) { (write_field(field, part.*inner.member, out), ...); },
+void write_field(const Inlined<Part, Inner>& inner, const Part& part, Json& json) {
+  std::apply([&](const auto&... field) { (write_field(field, part.*inner.member, json), ...); },
              Inner::fields());
 }
 template <class Part, class Inner>
-void describe_field(const Inlined<Part, Inner>&, ObjectSchema& out, Definitions& definitions) {
-  std::apply([&](const auto&... field) { (describe_field(field, out, definitions), ...); },
+void describe_field(const Inlined<Part, Inner>&, ObjectSchema& schema, Definitions& definitions) {
+  std::apply([&](const auto&... field) { (describe_field(field, schema, definitions), ...); },
              Inner::fields());
 }
 
@@ -114,30 +114,30 @@ void add_keys(const Alternative<Part, Variant>&, std::vector<std::string>& keys)
   for (std::string& name : names_of<Variant>()) keys.push_back(std::move(name));
 }
 template <class Part, class Variant>
-void read_field(const Alternative<Part, Variant>& field, const Reader& in, Part& part) {
+void read_field(const Alternative<Part, Variant>& field, const Reader& reader, Part& part) {
   const auto names = names_of<Variant>();
   std::size_t given = 0;
   for (const std::string& name : names) {
-    if (const auto settings = in.find(name)) {
+    if (const auto settings = reader.find(name)) {
       read_alternative(name, *settings, part.*field.member);
       ++given;
     }
   }
-  if (given > 1) in.fault("expected only one of the keys " + listed(names));
+  if (given > 1) reader.fault("expected only one of the keys " + listed(names));
 }
 template <class Part, class Variant>
-void write_field(const Alternative<Part, Variant>& field, const Part& part, Json& out) {
-  out[name_of(part.*field.member)] = written_settings(part.*field.member);
+void write_field(const Alternative<Part, Variant>& field, const Part& part, Json& json) {
+  json[name_of(part.*field.member)] = written_settings(part.*field.member);
 }
 template <class Part, class Variant>
-void describe_field(const Alternative<Part, Variant>& field, ObjectSchema& out,
+void describe_field(const Alternative<Part, Variant>& field, ObjectSchema& schema,
                     Definitions& definitions) {
   const ObjectSchema alternatives = alternatives_schema<Variant>(definitions);
-  out.properties.update(alternatives.properties);
-  out.rules.update(at_most_one_of(names_of<Variant>()));
+  schema.properties.update(alternatives.properties);
+  schema.rules.update(at_most_one_of(names_of<Variant>()));
   const Variant otherwise = Part{}.*field.member;
   if (const Json value = written_settings(otherwise); !value.is_object())
-    out.properties[name_of(otherwise)]["default"] = value;
+    schema.properties[name_of(otherwise)]["default"] = value;
 }
 
 template <class Part, class Kind, std::size_t n>
@@ -146,26 +146,26 @@ void add_keys(const KeyedNumber<Part, Kind, n>& field, std::vector<std::string>&
 }
 /// The one of a number's keys that is given, after noting what is wrong with them.
 template <class Part, class Kind, std::size_t n>
-std::optional<Reader> read_kind(const KeyedNumber<Part, Kind, n>& field, const Reader& in,
+std::optional<Reader> read_kind(const KeyedNumber<Part, Kind, n>& field, const Reader& reader,
                                 Part& part) {
   std::vector<std::string> keys;
   add_keys(field, keys);
   std::size_t given = 0;
   std::optional<Reader> number;
   for (const auto& [key, kind] : field.keys) {
-    if (const auto member = in.find(std::string(key))) {
+    if (const auto member = reader.find(std::string(key))) {
       number = member;
       part.*field.kind = kind;
       ++given;
     }
   }
-  if (given > 1) in.fault("expected only one of the keys " + listed(keys));
-  if (given == 0 && field.required) in.fault("expected one of the keys " + listed(keys));
+  if (given > 1) reader.fault("expected only one of the keys " + listed(keys));
+  if (given == 0 && field.required) reader.fault("expected one of the keys " + listed(keys));
   return number;
 }
 template <class Part, class Kind, std::size_t n>
-void read_field(const KeyedNumber<Part, Kind, n>& field, const Reader& in, Part& part) {
-  const auto number = read_kind(field, in, part);
+void read_field(const KeyedNumber<Part, Kind, n>& field, const Reader& reader, Part& part) {
+  const auto number = read_kind(field, reader, part);
   if (!number) return;
   for (std::size_t i = 0; i < n; ++i) {
     if (field.keys[i].second == part.*field.kind)
@@ -173,12 +173,12 @@ void read_field(const KeyedNumber<Part, Kind, n>& field, const Reader& in, Part&
   }
 }
 template <class Part, class Kind, std::size_t n>
-void write_field(const KeyedNumber<Part, Kind, n>& field, const Part& part, Json& out) {
-  out[name_in(field.keys, part.*field.kind)] = plain_number(part.*field.value);
+void write_field(const KeyedNumber<Part, Kind, n>& field, const Part& part, Json& json) {
+  json[name_in(field.keys, part.*field.kind)] = plain_number(part.*field.value);
 }
 /// Describes every key by describe(form, text, default).
 template <class Part, class Kind, std::size_t n, class Describe>
-void describe_kinds(const KeyedNumber<Part, Kind, n>& field, bool required, ObjectSchema& out,
+void describe_kinds(const KeyedNumber<Part, Kind, n>& field, bool required, ObjectSchema& schema,
                     const Describe& describe) {
   std::vector<std::string> keys;
   Json one_each = Json::array();
@@ -186,20 +186,20 @@ void describe_kinds(const KeyedNumber<Part, Kind, n>& field, bool required, Obje
     const auto& [key, kind] = field.keys[i];
     std::optional<Json> otherwise;
     if (!required && kind == Part{}.*field.kind) otherwise = plain_number(Part{}.*field.value);
-    out.properties[key] = describe(field.forms[i], field.texts[i], otherwise);
+    schema.properties[key] = describe(field.forms[i], field.texts[i], otherwise);
     one_each.push_back({{"required", Json::array({key})}});
     keys.emplace_back(key);
   }
   if (required) {
-    out.rules["oneOf"] = one_each;
+    schema.rules["oneOf"] = one_each;
   } else {
-    out.rules.update(at_most_one_of(keys));
+    schema.rules.update(at_most_one_of(keys));
   }
 }
 template <class Part, class Kind, std::size_t n>
-void describe_field(const KeyedNumber<Part, Kind, n>& field, ObjectSchema& out,
+void describe_field(const KeyedNumber<Part, Kind, n>& field, ObjectSchema& schema,
                     Definitions& definitions) {
-  describe_kinds(field, field.required, out,
+  describe_kinds(field, field.required, schema,
                  [&](const Number& form, std::string_view text, const auto& otherwise) {
                    return described_as(value_schema(form, definitions), "",
                                        sentence_of(text, form.unit), otherwise, "");
@@ -211,17 +211,18 @@ void add_keys(const IrregularField<Read, Write, Describe>& field, std::vector<st
   keys.emplace_back(field.key);
 }
 template <class Read, class Write, class Describe, class Part>
-void read_field(const IrregularField<Read, Write, Describe>& field, const Reader& in, Part& part) {
-  field.read(in, part);
+void read_field(const IrregularField<Read, Write, Describe>& field, const Reader& reader,
+                Part& part) {
+  field.read(reader, part);
 }
 template <class Read, class Write, class Describe, class Part>
-void write_field(const IrregularField<Read, Write, Describe>& field, const Part& part, Json& out) {
-  field.write(part, out);
+void write_field(const IrregularField<Read, Write, Describe>& field, const Part& part, Json& json) {
+  field.write(part, json);
 }
 template <class Read, class Write, class Describe>
-void describe_field(const IrregularField<Read, Write, Describe>& field, ObjectSchema& out,
+void describe_field(const IrregularField<Read, Write, Describe>& field, ObjectSchema& schema,
                     Definitions& definitions) {
-  field.describe(out, definitions);
+  field.describe(schema, definitions);
 }
 
 // Parts.
@@ -234,16 +235,16 @@ std::vector<std::string> keys_of(const Fields& fields) {
 }
 /// Reads the fields of an object; false where it is none.
 template <class Fields, class Part>
-bool read_object(const Fields& fields, const Reader& in, Part& part) {
-  if (!in.is_object_of(keys_of(fields))) return false;
-  std::apply([&](const auto&... field) { (read_field(field, in, part), ...); }, fields);
+bool read_object(const Fields& fields, const Reader& reader, Part& part) {
+  if (!reader.is_object_of(keys_of(fields))) return false;
+  std::apply([&](const auto&... field) { (read_field(field, reader, part), ...); }, fields);
   return true;
 }
 template <class Fields, class Part>
 Json written_object(const Fields& fields, const Part& part) {
-  Json out = Json::object();
-  std::apply([&](const auto&... field) { (write_field(field, part, out), ...); }, fields);
-  return out;
+  Json json = Json::object();
+  std::apply([&](const auto&... field) { (write_field(field, part, json), ...); }, fields);
+  return json;
 }
 template <class Fields>
 ObjectSchema object_schema(const Fields& fields, Definitions& definitions) {
@@ -254,17 +255,17 @@ ObjectSchema object_schema(const Fields& fields, Definitions& definitions) {
 }
 
 template <class Part>
-bool read_part(const Reader& in, Part& part) {
+bool read_part(const Reader& reader, Part& part) {
   if constexpr (HasForm<Part>) {
-    return read_value(Part::form, in, part);
+    return read_value(Part::form, reader, part);
   } else if constexpr (Bare<Part>) {
     constexpr auto only = std::get<0>(Part::fields());
-    return read_value(only.form, in, part.*only.member);
+    return read_value(only.form, reader, part.*only.member);
   } else {
-    if (!read_object(Part::fields(), in, part)) return false;
+    if (!read_object(Part::fields(), reader, part)) return false;
     if constexpr (requires { part_fault(part); }) {
-      const std::optional<std::string> fault = in.sound() ? part_fault(part) : std::nullopt;
-      if (fault) in.fault(*fault);
+      const std::optional<std::string> fault = reader.sound() ? part_fault(part) : std::nullopt;
+      if (fault) reader.fault(*fault);
     }
     return true;
   }

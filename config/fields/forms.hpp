@@ -36,7 +36,7 @@ template <class Form>
 inline constexpr bool has_absence<OrWord<Form>> = true;
 
 template <class Part>
-bool read_part(const Reader& in, Part& part);
+bool read_part(const Reader& reader, Part& part);
 template <class Part>
 Json written_part(const Part& part);
 template <class Part>
@@ -57,7 +57,7 @@ template <class Variant>
 std::vector<std::string> names_of() {
   std::vector<std::string> names;
   for_each_alternative<Variant>([&]<class Part>(std::type_identity<Part>) {
-    const std::string name(Part::about.name);
+    const std::string name(Part::description.name);
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   });
   return names;
@@ -65,19 +65,19 @@ std::vector<std::string> names_of() {
 
 template <class Variant>
 std::string name_of(const Variant& value) {
-  return std::visit([](const auto& part) { return std::string(part.about.name); }, value);
+  return std::visit([](const auto& part) { return std::string(part.description.name); }, value);
 }
 
 /// Reads the first alternative that has the name.
 template <class Variant>
-void read_alternative(std::string_view name, const Reader& settings, Variant& into) {
+void read_alternative(std::string_view name, const Reader& settings, Variant& target) {
   bool found = false;
   for_each_alternative<Variant>([&]<class Part>(std::type_identity<Part>) {
-    if (found || name != Part::about.name) return;
+    if (found || name != Part::description.name) return;
     found = true;
     Part part{};
     read_part(settings, part);
-    into = std::move(part);
+    target = std::move(part);
   });
 }
 
@@ -91,10 +91,10 @@ template <class Variant>
 ObjectSchema alternatives_schema(Definitions& definitions) {
   ObjectSchema schema;
   for_each_alternative<Variant>([&]<class Part>(std::type_identity<Part> part) {
-    if (schema.properties.contains(Part::about.name)) return;
-    schema.properties[Part::about.name] =
-        described_as(part_schema(part, definitions), Part::about.title,
-                     sentence_of(Part::about.text, ""), std::nullopt, "");
+    if (schema.properties.contains(Part::description.name)) return;
+    schema.properties[Part::description.name] =
+        described_as(part_schema(part, definitions), Part::description.title,
+                     sentence_of(Part::description.text, ""), std::nullopt, "");
   });
   schema.rules["minProperties"] = 1;
   schema.rules["maxProperties"] = 1;
@@ -104,8 +104,8 @@ ObjectSchema alternatives_schema(Definitions& definitions) {
 // Forms that hold parts and other forms.
 
 template <class Part>
-bool read_value(const Object<Part>&, const Reader& in, Part& into) {
-  return read_part(in, into);
+bool read_value(const Object<Part>&, const Reader& reader, Part& target) {
+  return read_part(reader, target);
 }
 template <class Part>
 Json written_value(const Object<Part>&, const Part& part) {
@@ -126,10 +126,10 @@ bool is_of_kind(const Object<Part>&, const Json& value) {
 }
 
 template <class Variant>
-bool read_value(const OneOf<Variant>& form, const Reader& in, Variant& into) {
+bool read_value(const OneOf<Variant>& form, const Reader& reader, Variant& target) {
   const auto names = names_of<Variant>();
-  const auto choice = form.by_name ? in.named_choice(names) : in.choice(names);
-  if (choice) read_alternative(choice->name, choice->settings, into);
+  const auto choice = form.by_name ? reader.named_choice(names) : reader.choice(names);
+  if (choice) read_alternative(choice->name, choice->settings, target);
   return choice.has_value();
 }
 /// An alternative without settings is its name alone, where that may stand for it.
@@ -149,26 +149,26 @@ Json value_schema(const OneOf<Variant>& form, Definitions& definitions) {
 
 /// Notes a value that is neither of the form nor the word in its place.
 template <class Form>
-bool is_of_kind(const OrWord<Form>& form, const Reader& in) {
-  if (is_of_kind(form.form, in.value())) return true;
-  in.wrong_type(expected(form.form) + ", or \"" + std::string(form.word) + '"');
+bool is_of_kind(const OrWord<Form>& form, const Reader& reader) {
+  if (is_of_kind(form.form, reader.value())) return true;
+  reader.wrong_type(expected(form.form) + ", or \"" + std::string(form.word) + '"');
   return false;
 }
 template <class Form, class Value>
-bool read_value(const OrWord<Form>& form, const Reader& in, std::optional<Value>& into) {
-  const bool is_word = in.value() == Json(form.word);
-  into.reset();
-  return is_word || (is_of_kind(form, in) && read_value(form.form, in, into.emplace()));
+bool read_value(const OrWord<Form>& form, const Reader& reader, std::optional<Value>& target) {
+  const bool is_word = reader.value() == Json(form.word);
+  target.reset();
+  return is_word || (is_of_kind(form, reader) && read_value(form.form, reader, target.emplace()));
 }
 template <class Form, class Value>
 Json written_value(const OrWord<Form>& form, const std::optional<Value>& value) {
   return value ? written_value(form.form, *value) : Json(form.word);
 }
 template <class Form>
-bool read_value(const OrWord<Form>& form, const Reader& in, double& into) {
-  const bool is_word = in.value() == Json(form.word);
-  if (is_word) into = std::numeric_limits<double>::infinity();
-  return is_word || (is_of_kind(form, in) && read_value(form.form, in, into));
+bool read_value(const OrWord<Form>& form, const Reader& reader, double& target) {
+  const bool is_word = reader.value() == Json(form.word);
+  if (is_word) target = std::numeric_limits<double>::infinity();
+  return is_word || (is_of_kind(form, reader) && read_value(form.form, reader, target));
 }
 template <class Form>
 Json written_value(const OrWord<Form>& form, double value) {
@@ -181,22 +181,22 @@ Json value_schema(const OrWord<Form>& form, Definitions& definitions) {
 }
 
 template <class Form, class Value>
-bool read_value(const ListOf<Form>& form, const Reader& in, std::vector<Value>& into) {
-  if (!in.is_list(form.least, form.most, form.of_what)) return false;
-  into.clear();
-  for (std::size_t i = 0; i < in.value().size(); ++i) {
-    const Reader element = in.element(i);
+bool read_value(const ListOf<Form>& form, const Reader& reader, std::vector<Value>& target) {
+  if (!reader.is_list(form.least, form.most, form.of_what)) return false;
+  target.clear();
+  for (std::size_t i = 0; i < reader.value().size(); ++i) {
+    const Reader element = reader.element(i);
     Value value{};
     const bool read = read_value(form.form, element, value);
     if constexpr (std::is_arithmetic_v<Value>) {
       if (form.ascending && !read) continue;
-      if (form.ascending && std::ranges::find(into, value) != into.end())
+      if (form.ascending && std::ranges::find(target, value) != target.end())
         element.fault(written_value(form.form, value).dump() + " is listed twice");
     }
-    into.push_back(std::move(value));
+    target.push_back(std::move(value));
   }
   if constexpr (std::is_arithmetic_v<Value>) {
-    if (form.ascending) std::ranges::sort(into);
+    if (form.ascending) std::ranges::sort(target);
   }
   return true;
 }

@@ -61,18 +61,18 @@ std::string expected(const Number& form) {
   return "a number " + allowed(form.range);
 }
 
-bool read_value(const Number& form, const Reader& in, double& into) {
-  if (!in.value().is_number()) {
-    in.wrong_type(expected(form));
+bool read_value(const Number& form, const Reader& reader, double& target) {
+  if (!reader.value().is_number()) {
+    reader.wrong_type(expected(form));
     return false;
   }
-  const double number = in.value().number();
+  const double number = reader.value().number();
   if (form.range.contains(number)) {
-    into = number;
+    target = number;
     return true;
   }
-  in.fault(
-      fmt::format("{} is out of range: expected {}", canonical_text(in.value()), expected(form)));
+  reader.fault(fmt::format("{} is out of range: expected {}", canonical_text(reader.value()),
+                           expected(form)));
   return false;
 }
 
@@ -101,9 +101,9 @@ Json value_schema(const Whole& form, Definitions&) {
   return schema;
 }
 
-bool read_value(const Flag&, const Reader& in, bool& into) {
-  const auto value = in.boolean();
-  into = value.value_or(into);
+bool read_value(const Flag&, const Reader& reader, bool& target) {
+  const auto value = reader.boolean();
+  target = value.value_or(target);
   return value.has_value();
 }
 
@@ -111,12 +111,12 @@ Json value_schema(const Flag&, Definitions&) {
   return {{"type", "boolean"}};
 }
 
-bool read_value(const Text& form, const Reader& in, std::string& into) {
-  const auto text = in.text();
+bool read_value(const Text& form, const Reader& reader, std::string& target) {
+  const auto text = reader.text();
   if (!text) return false;
-  into = *text;
-  if (form.first.empty() || is_right(form, into)) return true;
-  in.fault(std::string(form.rule));
+  target = *text;
+  if (form.first.empty() || is_right(form, target)) return true;
+  reader.fault(std::string(form.rule));
   return false;
 }
 
@@ -128,14 +128,14 @@ Json value_schema(const Text& form, Definitions&) {
   return schema;
 }
 
-std::optional<std::pair<double, double>> read_bounds(const Bounds& form, const Reader& in) {
-  if (!in.is_list(2, 2, form.numbers)) return std::nullopt;
+std::optional<std::pair<double, double>> read_bounds(const Bounds& form, const Reader& reader) {
+  if (!reader.is_list(2, 2, form.numbers)) return std::nullopt;
   double low = 0, high = 0;
-  const bool low_read = read_value(Number{form.low}, in.element(0), low);
-  const bool high_read = read_value(Number{form.high}, in.element(1), high);
+  const bool low_read = read_value(Number{form.low}, reader.element(0), low);
+  const bool high_read = read_value(Number{form.high}, reader.element(1), high);
   if (!low_read || !high_read) return std::nullopt;
   if (low < high) return std::pair{low, high};
-  in.fault(finite_text("the {} from {} to {} is empty: {}", form.slice, low, high, form.rule));
+  reader.fault(finite_text("the {} from {} to {} is empty: {}", form.slice, low, high, form.rule));
   return std::nullopt;
 }
 
@@ -154,19 +154,19 @@ Json words_schema(const std::vector<std::string>& words) {
 
 Json described_as(Json schema, std::string_view title, std::string_view text,
                   const std::optional<Json>& otherwise, std::string_view examples) {
-  Json out = Json::object();
-  if (!title.empty()) out["title"] = title;
-  if (!text.empty()) out["description"] = text;
-  if (otherwise || !out.empty() || !examples.empty()) {
+  Json json = Json::object();
+  if (!title.empty()) json["title"] = title;
+  if (!text.empty()) json["description"] = text;
+  if (otherwise || !json.empty() || !examples.empty()) {
     // Draft-07 ignores keys beside a reference.
     if (schema.contains("$ref")) schema = Json{{"allOf", Json::array({schema})}};
   }
   for (const auto& [key, value] : schema.members()) {
-    if (!out.contains(key)) out[key] = value;
+    if (!json.contains(key)) json[key] = value;
   }
-  if (otherwise) out["default"] = *otherwise;
-  if (!examples.empty()) out["examples"] = Json::parse(examples);
-  return out;
+  if (otherwise) json["default"] = *otherwise;
+  if (!examples.empty()) json["examples"] = Json::parse(examples);
+  return json;
 }
 
 std::string sentence_of(std::string_view text, std::string_view unit) {
@@ -186,8 +186,8 @@ Json ObjectSchema::json() const {
   return schema;
 }
 
-Json either(Json one, Json other) {
-  return {{"anyOf", Json::array({std::move(one), std::move(other)})}};
+Json either(Json first, Json second) {
+  return {{"anyOf", Json::array({std::move(first), std::move(second)})}};
 }
 
 Json at_most_one_of(const std::vector<std::string>& keys) {

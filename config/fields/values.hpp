@@ -32,7 +32,7 @@ Json plain_number(double value);
 /// [low, high]
 Json written_bounds(double low, double high);
 
-bool read_value(const Number& form, const Reader& in, double& into);
+bool read_value(const Number& form, const Reader& reader, double& target);
 Json written_value(const Number& form, double value);
 Json value_schema(const Number& form, Definitions& definitions);
 /// "a number from 0 to 1"
@@ -44,8 +44,8 @@ inline bool is_of_kind(const Number&, const Json& value) {
 inline Number number_of(const Strength& form) {
   return {form.range, form.unit};
 }
-inline bool read_value(const Strength& form, const Reader& in, double& into) {
-  return read_value(number_of(form), in, into);
+inline bool read_value(const Strength& form, const Reader& reader, double& target) {
+  return read_value(number_of(form), reader, target);
 }
 inline Json written_value(const Strength&, double value) {
   return plain_number(value);
@@ -55,10 +55,10 @@ inline Json value_schema(const Strength& form, Definitions& definitions) {
 }
 
 template <std::unsigned_integral Integer>
-bool read_value(const Whole& form, const Reader& in, Integer& into) {
+bool read_value(const Whole& form, const Reader& reader, Integer& target) {
   static_assert(!std::same_as<Integer, bool>);
-  const auto whole = in.whole_number(form.least, form.most);
-  if (whole) into = static_cast<Integer>(*whole);
+  const auto whole = reader.whole_number(form.least, form.most);
+  if (whole) target = static_cast<Integer>(*whole);
   return whole.has_value();
 }
 inline Json written_value(const Whole&, std::uint64_t value) {
@@ -70,24 +70,24 @@ inline bool is_of_kind(const Whole&, const Json& value) {
   return value.is_number();
 }
 
-bool read_value(const Flag& form, const Reader& in, bool& into);
+bool read_value(const Flag& form, const Reader& reader, bool& target);
 inline Json written_value(const Flag&, bool value) {
   return value;
 }
 Json value_schema(const Flag& form, Definitions& definitions);
 
-bool read_value(const Text& form, const Reader& in, std::string& into);
+bool read_value(const Text& form, const Reader& reader, std::string& target);
 inline Json written_value(const Text&, const std::string& value) {
   return value;
 }
 Json value_schema(const Text& form, Definitions& definitions);
 
 /// Reads [low, high], each in its range, the first the lower.
-std::optional<std::pair<double, double>> read_bounds(const Bounds& form, const Reader& in);
+std::optional<std::pair<double, double>> read_bounds(const Bounds& form, const Reader& reader);
 template <class Slice>
-bool read_value(const Bounds& form, const Reader& in, Slice& into) {
-  const auto read = read_bounds(form, in);
-  if (read) into = Slice{read->first, read->second};
+bool read_value(const Bounds& form, const Reader& reader, Slice& target) {
+  const auto read = read_bounds(form, reader);
+  if (read) target = Slice{read->first, read->second};
   return read.has_value();
 }
 template <class Slice>
@@ -105,9 +105,9 @@ std::string name_in(const std::array<std::pair<std::string_view, Enum>, n>& name
   throw std::logic_error("an enumerator that scenes have no name for");
 }
 template <std::size_t n, class Enum>
-bool read_value(const Word<n, Enum>& form, const Reader& in, Enum& into) {
-  const auto found = in.named(form.names);
-  if (found) into = *found;
+bool read_value(const Word<n, Enum>& form, const Reader& reader, Enum& target) {
+  const auto found = reader.named(form.names);
+  if (found) target = *found;
   return found.has_value();
 }
 template <std::size_t n, class Enum>
@@ -139,7 +139,7 @@ struct ObjectSchema {
 };
 
 /// The schema {"anyOf": [one, other]}.
-Json either(Json one, Json other);
+Json either(Json first, Json second);
 /// A schema that admits at most one of the keys.
 Json at_most_one_of(const std::vector<std::string>& keys);
 

@@ -177,21 +177,21 @@ const Json& Json::at(std::size_t index) const {
 }
 
 const Json* Json::find_pointer(std::string_view pointer) const {
-  const Json* here = this;
-  while (here != nullptr && !pointer.empty()) {
+  const Json* node = this;
+  while (node != nullptr && !pointer.empty()) {
     if (pointer.front() != '/') return nullptr;
     const std::string_view token = pointer.substr(1, pointer.find('/', 1) - 1);
     pointer.remove_prefix(1 + token.size());
     const auto key = unescaped(token);
     if (!key) return nullptr;
-    if (here->is_array()) {
+    if (node->is_array()) {
       const auto index = index_of(*key);
-      here = index && *index < here->size() ? &here->elements()[*index] : nullptr;
+      node = index && *index < node->size() ? &node->elements()[*index] : nullptr;
     } else {
-      here = here->find(*key);
+      node = node->find(*key);
     }
   }
-  return here;
+  return node;
 }
 
 Json* Json::find_pointer(std::string_view pointer) {
@@ -224,11 +224,11 @@ void Json::push_back(Json element) {
   list->push_back(std::move(element));
 }
 
-bool Json::operator==(const Json& other) const {
-  if (is_number() && other.is_number() && value_.index() != other.value_.index()) {
-    return number() == other.number();
+bool Json::operator==(const Json& rhs) const {
+  if (is_number() && rhs.is_number() && value_.index() != rhs.value_.index()) {
+    return number() == rhs.number();
   }
-  return value_ == other.value_;
+  return value_ == rhs.value_;
 }
 
 }  // namespace jostle::inline config

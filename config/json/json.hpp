@@ -104,7 +104,7 @@ class Json {
   std::string dump(int indent = -1) const;
 
   /// Numbers are equal by value: 1 is 1.0. Objects have the same members in the same order.
-  bool operator==(const Json& other) const;
+  bool operator==(const Json& rhs) const;
 
  private:
   using List = std::vector<Json>;
@@ -121,7 +121,7 @@ class Json {
 struct Json::Member {
   std::string key;
   Json value;
-  bool operator==(const Member& other) const = default;
+  bool operator==(const Member& rhs) const = default;
 };
 
 /// The version of the library that parses and prints: "3.11.2".

@@ -18,21 +18,23 @@ constexpr std::size_t most_keys = 1000;
 
 /// Line and column, both from 1, of a byte of the text.
 std::string place(std::string_view text, std::size_t byte) {
-  const std::string_view before = text.substr(0, std::min(byte, text.size()));
-  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::size_t newline = before.rfind('\n');
+  const std::string_view preceding = text.substr(0, std::min(byte, text.size()));
+  const auto line = 1 + std::count(preceding.begin(), preceding.end(), '\n');
+  const std::size_t newline = preceding.rfind('\n');
   const std::size_t column =
-      newline == std::string_view::npos ? before.size() : before.size() - newline - 1;
+      newline == std::string_view::npos ? preceding.size() : preceding.size() - newline - 1;
   return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
 }
 
 /// nlohmann's message without its number and without its own idea of the place.
-std::string reason(std::string_view what) {
-  if (const auto bracket = what.find("] "); bracket != what.npos) what.remove_prefix(bracket + 2);
-  if (what.starts_with("parse error at line")) {
-    if (const auto colon = what.find(": "); colon != what.npos) what.remove_prefix(colon + 2);
+std::string reason(std::string_view message) {
+  if (const auto bracket = message.find("] "); bracket != message.npos)
+    message.remove_prefix(bracket + 2);
+  if (message.starts_with("parse error at line")) {
+    if (const auto colon = message.find(": "); colon != message.npos)
+      message.remove_prefix(colon + 2);
   }
-  return std::string(what);
+  return std::string(message);
 }
 
 /// Describes syntax of other dialects at the byte where reading ended; otherwise empty.
@@ -41,8 +43,8 @@ std::string_view foreign_dialect(std::string_view text, std::size_t end) {
   const char last = text[end - 1];
   if (last == '/' || last == '#') return "a comment: JSON has neither comments nor trailing commas";
   if (last != ']' && last != '}') return {};
-  const std::size_t before = text.substr(0, end - 1).find_last_not_of(" \t\r\n");
-  if (before == text.npos || text[before] != ',') return {};
+  const std::size_t place = text.substr(0, end - 1).find_last_not_of(" \t\r\n");
+  if (place == text.npos || text[place] != ',') return {};
   return "a comma before the end of a list or an object: JSON has neither comments nor trailing "
          "commas";
 }
@@ -81,8 +83,8 @@ class ValueBuilder : public nlohmann::json_sax<LibraryJson> {
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::detail::exception& error) override {
     const std::string_view dialect = foreign_dialect(text_, position);
-    const std::string why = dialect.empty() ? reason(error.what()) : std::string(dialect);
-    faults_.push_back({"", fmt::format("not JSON: {}: {}", place(text_, position), why)});
+    const std::string explanation = dialect.empty() ? reason(error.what()) : std::string(dialect);
+    faults_.push_back({"", fmt::format("not JSON: {}: {}", place(text_, position), explanation)});
     return false;
   }
 
@@ -139,13 +141,13 @@ LibraryJson library_value(const Json& value) {
     return value.whole_number();
   }
   if (value.is_number()) return value.number();
-  LibraryJson out = value.is_array() ? LibraryJson::array() : LibraryJson::object();
+  LibraryJson json = value.is_array() ? LibraryJson::array() : LibraryJson::object();
   if (value.is_array()) {
-    for (const Json& element : value.elements()) out.push_back(library_value(element));
+    for (const Json& element : value.elements()) json.push_back(library_value(element));
   } else {
-    for (const auto& [key, member] : value.members()) out[key] = library_value(member);
+    for (const auto& [key, member] : value.members()) json[key] = library_value(member);
   }
-  return out;
+  return json;
 }
 
 }  // namespace

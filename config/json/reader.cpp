@@ -37,8 +37,8 @@ bool sound(const std::vector<Fault>& faults, std::string_view pointer) {
                       [&](const Fault& fault) { return is_within(fault.pointer, pointer); });
 }
 
-void Reader::missing(std::string_view key, std::string_view what) const {
-  faults_->push_back({pointer_to(pointer_, key), fmt::format("this key is required: {}", what)});
+void Reader::missing(std::string_view key, std::string_view content) const {
+  faults_->push_back({pointer_to(pointer_, key), fmt::format("this key is required: {}", content)});
 }
 
 bool Reader::sound() const {

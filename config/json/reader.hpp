@@ -28,8 +28,8 @@ class Reader {
   void fault(std::string message) const { faults_->push_back({pointer_, std::move(message)}); }
   /// Notes that the value is something else than what is expected.
   void wrong_type(std::string_view expected) const;
-  /// Notes that a key is missing; `what` describes its content.
-  void missing(std::string_view key, std::string_view what) const;
+  /// Notes that a key is missing; `content` describes its content.
+  void missing(std::string_view key, std::string_view content) const;
   /// Tests if no fault was noted at this value or below it.
   bool sound() const;
 

@@ -8,21 +8,22 @@
 namespace jostle::inline config {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) above[j] = j;
+  std::vector<std::size_t> second_row_above(b.size() + 1), row_above(b.size() + 1),
+      row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row_above[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      row[j] = std::min({above[j] + 1, row[j - 1] + 1, replaced});
+      const std::size_t replaced = row_above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({row_above[j] + 1, row[j - 1] + 1, replaced});
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        row[j] = std::min(row[j], before[j - 2] + 1);
+        row[j] = std::min(row[j], second_row_above[j - 2] + 1);
       }
     }
-    before.swap(above);
-    above.swap(row);
+    second_row_above.swap(row_above);
+    row_above.swap(row);
   }
-  return above[b.size()];
+  return row_above[b.size()];
 }
 
 namespace {
@@ -88,7 +89,7 @@ constexpr std::string_view fraction_hint =
 /// A name that papers give to a quantity, and what scenes have for it.
 struct KnownName {
   std::string_view name, hint;
-  std::string_view beside = "";  // a key that is allowed in the place where this hint applies
+  std::string_view sibling = "";  // a key that is allowed in the place where this hint applies
 };
 // The first that fits is given.
 constexpr KnownName known_elsewhere[] = {{"radius", tube_hint, "sides"},
@@ -150,8 +151,8 @@ constexpr KnownName known_elsewhere[] = {{"radius", tube_hint, "sides"},
 std::string key_hint(std::string_view written, const std::vector<std::string>& candidates) {
   const auto fits = [&](const KnownName& known) {
     return known.name == written &&
-           (known.beside.empty() ||
-            std::ranges::find(candidates, known.beside) != candidates.end());
+           (known.sibling.empty() ||
+            std::ranges::find(candidates, known.sibling) != candidates.end());
   };
   const auto known = std::ranges::find_if(known_elsewhere, fits);
   if (known == std::end(known_elsewhere)) return did_you_mean(written, candidates);

@@ -80,8 +80,8 @@ class AnalysisCheck {
   void check(const std::string& place, const HysteresisSettings& settings) {
     check_last(place, settings.last, 1);
     const std::vector<Stage> steps = stages(scene_.protocol);
-    const auto same = [&](const Stage& stage) { return stage.tap == steps.front().tap; };
-    if (std::ranges::all_of(steps, same)) {
+    const auto is_same = [&](const Stage& stage) { return stage.tap == steps.front().tap; };
+    if (std::ranges::all_of(steps, is_same)) {
       note(place, "",
            "the protocol has taps of one strength only: hysteresis needs a ramp, and a loop one up "
            "and "
@@ -90,12 +90,12 @@ class AnalysisCheck {
   }
 
   void check(const std::string& place, const OrderingSettings& settings) {
-    const std::string& other = settings.equilibrium;
-    if (!other.empty() && observables_sound_ &&
-        std::ranges::find(observed_, other) == observed_.end()) {
+    const std::string& candidate = settings.equilibrium;
+    if (!candidate.empty() && observables_sound_ &&
+        std::ranges::find(observed_, candidate) == observed_.end()) {
       note(place, "/equilibrium",
-           fmt::format("\"{}\" is not observed (observed: {}).{}", other, listed(observed_),
-                       did_you_mean(other, observed_)));
+           fmt::format("\"{}\" is not observed (observed: {}).{}", candidate, listed(observed_),
+                       did_you_mean(candidate, observed_)));
     }
     if (settings.hold > taps_) {
       note(place, "/hold",

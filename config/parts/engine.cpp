@@ -2,8 +2,8 @@
 
 namespace jostle::inline config {
 
-bool read_part(const Reader& in, DiscreteElement& grains) {
-  const bool read = read_object(DiscreteElement::fields(), in, grains);
+bool read_part(const Reader& reader, DiscreteElement& grains) {
+  const bool read = read_object(DiscreteElement::fields(), reader, grains);
   if (!grains.steps_per_contact) grains.steps_per_contact = steps_of_contact(grains);
   return read;
 }
@@ -16,8 +16,8 @@ Json part_schema(std::type_identity<DiscreteElement>, Definitions& definitions) 
   return object_schema(DiscreteElement::fields(), definitions).json();
 }
 
-std::optional<DiscreteElement> read_engine(const Reader& in) {
-  const auto choice = in.named_choice({"monte_carlo", "discrete_element"});
+std::optional<DiscreteElement> read_engine(const Reader& reader) {
+  const auto choice = reader.named_choice({"monte_carlo", "discrete_element"});
   if (!choice) return std::nullopt;
   if (choice->name == "discrete_element") {
     DiscreteElement grains;

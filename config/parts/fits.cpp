@@ -69,20 +69,20 @@ constexpr std::tuple fit_fields{
           {.required = "the name of an observable of this scene"}),
     irregular(
         "model", read_models,
-        [](const FitRequest& fit, Json& out) { out["model"] = written_models(fit); },
-        [](ObjectSchema& out, Definitions&) {
-          out.properties["model"] = described_as(
+        [](const FitRequest& fit, Json& json) { json["model"] = written_models(fit); },
+        [](ObjectSchema& schema, Definitions&) {
+          schema.properties["model"] = described_as(
               models_schema(), "",
               "A law of docs/reference/laws.md, or a list of laws that compete; all: all that do, "
               "eqs. 3 and 4 as one.",
               std::nullopt, R"(["kww", ["inverse_log", "kww"]])");
-          out.required.emplace_back("model");
+          schema.required.emplace_back("model");
         }),
     irregular(
         "range", read_range,
-        [](const FitRequest& fit, Json& out) { out["range"] = written_range(fit); },
-        [](ObjectSchema& out, Definitions& definitions) {
-          out.properties["range"] =
+        [](const FitRequest& fit, Json& json) { json["range"] = written_range(fit); },
+        [](ObjectSchema& schema, Definitions& definitions) {
+          schema.properties["range"] =
               described_as(value_schema(list_of(Whole{0, most_taps}, 1, 2, ""), definitions), "",
                            "First and last tap; without the last, to the end.", written_range({}),
                            "[[1, 4000], [10]]");
@@ -99,8 +99,8 @@ std::vector<std::string> competing_laws() {
   return {"inverse_log", "two_exponentials", "kww"};
 }
 
-bool read_part(const Reader& in, FitRequest& fit) {
-  return read_object(fit_fields, in, fit);
+bool read_part(const Reader& reader, FitRequest& fit) {
+  return read_object(fit_fields, reader, fit);
 }
 Json written_part(const FitRequest& fit) {
   return written_object(fit_fields, fit);

@@ -13,15 +13,15 @@ namespace {
 
 constexpr auto tap_list = list_of(Whole{0, most_taps}, 0, 100'000, "tap numbers");
 
-bool read_tap_list(const Reader& in, std::vector<std::uint64_t>& into) {
+bool read_tap_list(const Reader& value, std::vector<std::uint64_t>& target) {
   std::set<std::uint64_t> taps;
-  if (!in.is_list(tap_list.least, tap_list.most, tap_list.of_what)) return false;
-  for (std::size_t i = 0; i < in.value().size(); ++i) {
+  if (!value.is_list(tap_list.least, tap_list.most, tap_list.of_what)) return false;
+  for (std::size_t i = 0; i < value.value().size(); ++i) {
     std::uint64_t tap = 0;
-    if (read_value(tap_list.form, in.element(i), tap) && !taps.insert(tap).second)
-      in.element(i).fault(fmt::format("tap {} is listed twice", tap));
+    if (read_value(tap_list.form, value.element(i), tap) && !taps.insert(tap).second)
+      value.element(i).fault(fmt::format("tap {} is listed twice", tap));
   }
-  into.assign(taps.begin(), taps.end());
+  target.assign(taps.begin(), taps.end());
   return true;
 }
 
@@ -31,23 +31,23 @@ Json tap_list_schema(Definitions& definitions) {
   return schema;
 }
 
-constexpr std::tuple grid_fields{field("from", &LogarithmicTaps::from, Whole{1, most_taps}),
-                                 field("to", &LogarithmicTaps::to, Whole{1, most_taps}, "",
+constexpr std::tuple grid_fields{field("from", &LogarithmicTaps::first, Whole{1, most_taps}),
+                                 field("to", &LogarithmicTaps::last, Whole{1, most_taps}, "",
                                        {.required = "the tap at which the grid ends"}),
                                  field("per_decade", &LogarithmicTaps::per_decade, Whole{1, 100})};
 
-bool read_grid(const Reader& in, LogarithmicTaps& grid) {
-  if (!in.is_object_of({"log", "also"})) return false;
-  if (const auto log = in.find("log")) {
+bool read_grid(const Reader& value, LogarithmicTaps& grid) {
+  if (!value.is_object_of({"log", "also"})) return false;
+  if (const auto log = value.find("log")) {
     read_object(grid_fields, *log, grid);
-    if (log->sound() && grid.from > grid.to) {
+    if (log->sound() && grid.first > grid.last) {
       log->fault(fmt::format("the grid from {} to {} is empty: from must not be above to",
-                             grid.from, grid.to));
+                             grid.first, grid.last));
     }
   } else {
-    in.missing("log", "an object with the keys from, to, per_decade");
+    value.missing("log", "an object with the keys from, to, per_decade");
   }
-  if (const auto also = in.find("also")) read_tap_list(*also, grid.also);
+  if (const auto also = value.find("also")) read_tap_list(*also, grid.also);
   return true;
 }
 
@@ -84,32 +84,32 @@ std::vector<std::string> kept_names() {
 }
 
 void read_keep(const Reader& object, SnapshotChoice& snapshots) {
-  const auto in = object.find("keep");
+  const auto value = object.find("keep");
   const std::vector<std::string> names = kept_names();
-  if (!in || !in->is_list(0, names.size(), "of the strings " + listed(names))) return;
+  if (!value || !value->is_list(0, names.size(), "of the strings " + listed(names))) return;
   std::set<std::string> kept;
-  for (std::size_t i = 0; i < in->value().size(); ++i) {
-    const Reader element = in->element(i);
-    const auto what = element.one_of(names);
-    if (what && !kept.insert(*what).second) element.fault(*what + " is listed twice");
+  for (std::size_t i = 0; i < value->value().size(); ++i) {
+    const Reader element = value->element(i);
+    const auto choice = element.one_of(names);
+    if (choice && !kept.insert(*choice).second) element.fault(*choice + " is listed twice");
   }
   for (const KeptPart& part : kept_parts) snapshots.*part.kept = kept.contains(part.name);
 }
 
-void write_keep(const SnapshotChoice& snapshots, Json& out) {
-  Json& keep = out["keep"] = Json::array();
+void write_keep(const SnapshotChoice& snapshots, Json& json) {
+  Json& keep = json["keep"] = Json::array();
   for (const KeptPart& part : kept_parts)
     if (snapshots.*part.kept) keep.push_back(part.name);
 }
 
-void describe_keep(ObjectSchema& out, Definitions&) {
+void describe_keep(ObjectSchema& schema, Definitions&) {
   Json by_default = Json::object();
   write_keep(default_snapshots(false), by_default);
   const Json names{{"type", "array"},
                    {"maxItems", std::size(kept_parts)},
                    {"uniqueItems", true},
                    {"items", words_schema(kept_names())}};
-  out.properties["keep"] = described_as(
+  schema.properties["keep"] = described_as(
       names, "Kept data of a snapshot",
       "Velocities (and spins, with friction), contacts with their forces, granular_temperature by "
       "height, and forces (of floor and sides, and the force-moment tensor of the bed) require "
@@ -121,21 +121,21 @@ void describe_keep(ObjectSchema& out, Definitions&) {
 
 /// A number of taps, or "all": every tap.
 void read_every(const Reader& object, SnapshotChoice& snapshots) {
-  const auto in = object.find("every");
-  if (!in) return;
-  if (in->value().is_string()) {
-    if (in->one_of({"all"})) snapshots.every = 1;
+  const auto value = object.find("every");
+  if (!value) return;
+  if (value->value().is_string()) {
+    if (value->one_of({"all"})) snapshots.every = 1;
   } else {
-    read_value(Whole{1, most_taps}, *in, snapshots.every.emplace(1));
+    read_value(Whole{1, most_taps}, *value, snapshots.every.emplace(1));
   }
 }
 
-void write_every(const SnapshotChoice& snapshots, Json& out) {
-  if (snapshots.every) out["every"] = *snapshots.every;
+void write_every(const SnapshotChoice& snapshots, Json& json) {
+  if (snapshots.every) json["every"] = *snapshots.every;
 }
 
-void describe_every(ObjectSchema& out, Definitions& definitions) {
-  out.properties["every"] = described_as(
+void describe_every(ObjectSchema& schema, Definitions& definitions) {
+  schema.properties["every"] = described_as(
       either(value_schema(Whole{1, most_taps}, definitions), words_schema({"all"})),
       "Step of regular snapshots",
       "Packings are kept after taps 0, every, 2 every, ..., beside those of taps; all: after every "
@@ -149,9 +149,9 @@ constexpr std::tuple snapshot_fields{
            .examples = R"([[0, 100, 4000], {"log": {"to": 4000, "per_decade": 3}, "also": [0]}])"}),
     irregular("every", read_every, write_every, describe_every),
     irregular("keep", read_keep, write_keep, describe_keep),
-    field("contact_cut", &SnapshotChoice::contact_cut, Number{between(1, 3), "diameters"},
+    field("contact_cut", &SnapshotChoice::contact_cut, Number{closed_range(1, 3), "diameters"},
           "Centres within this distance count as neighbours"),
-    field("bin_width", &SnapshotChoice::bin_width, Number{between(0.001, 10), "diameters"},
+    field("bin_width", &SnapshotChoice::bin_width, Number{closed_range(0.001, 10), "diameters"},
           "Width of bins of height: height histogram and granular temperatures")};
 
 }  // namespace
@@ -163,14 +163,14 @@ std::optional<std::string> part_fault(const BulkFraction& bulk) {
                      window->low, bulk.taper, 0.5 * bulk.taper);
 }
 
-bool read_value(const TapNumbers&, const Reader& in, TapChoice& into) {
-  if (in.value().is_object()) return read_grid(in, into.emplace<LogarithmicTaps>());
-  return read_tap_list(in, into.emplace<std::vector<std::uint64_t>>());
+bool read_value(const TapNumbers&, const Reader& value, TapChoice& target) {
+  if (value.value().is_object()) return read_grid(value, target.emplace<LogarithmicTaps>());
+  return read_tap_list(value, target.emplace<std::vector<std::uint64_t>>());
 }
-bool read_value(const TapNumbers& form, const Reader& in, std::vector<std::uint64_t>& into) {
+bool read_value(const TapNumbers& form, const Reader& value, std::vector<std::uint64_t>& target) {
   TapChoice choice;
-  const bool read = read_value(form, in, choice);
-  into = chosen_taps(choice);
+  const bool read = read_value(form, value, choice);
+  target = chosen_taps(choice);
   return read;
 }
 Json written_value(const TapNumbers&, const TapChoice& choice) {
@@ -206,8 +206,8 @@ std::optional<std::string> keep_fault(const SnapshotChoice& snapshots, bool grai
   return std::nullopt;
 }
 
-bool read_part(const Reader& in, SnapshotChoice& snapshots) {
-  return read_object(snapshot_fields, in, snapshots);
+bool read_part(const Reader& value, SnapshotChoice& snapshots) {
+  return read_object(snapshot_fields, value, snapshots);
 }
 Json written_part(const SnapshotChoice& snapshots) {
   return written_object(snapshot_fields, snapshots);

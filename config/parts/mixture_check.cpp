@@ -87,8 +87,8 @@ std::optional<std::string> place_fault(const MixtureKind& kind, const Container&
   const Boundary boundary(container);
   const double radius = 0.5 * range_of(kind.diameter).greatest;
   const auto [x, y] = *kind.place;
-  const auto outside = [&](bool planes, double at, double width) {
-    return planes ? at < radius || at > width - radius : at > width;
+  const auto outside = [&](bool planes, double coordinate, double width) {
+    return planes ? coordinate < radius || coordinate > width - radius : coordinate > width;
   };
   const double dx = x - boundary.axis(), dy = y - boundary.axis(), reach = boundary.axis() - radius;
   const bool is_out = boundary.tube ? dx * dx + dy * dy > reach * reach

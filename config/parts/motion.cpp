@@ -70,8 +70,8 @@ MotionSettings motion_settings(const MotionChoice& choice, std::uint64_t taps,
                           .kinds = n_kinds > 1 ? static_cast<std::uint32_t>(n_kinds) : 0};
   if (taps == 0) return settings;
   settings.origins = taps_or(
-      choice.origins, {.from = 1, .to = taps - 1, .per_decade = origins_a_decade, .also = {0}});
-  settings.lags = taps_or(choice.lags, {.from = 1, .to = taps, .per_decade = lags_a_decade});
+      choice.origins, {.first = 1, .last = taps - 1, .per_decade = origins_a_decade, .also = {0}});
+  settings.lags = taps_or(choice.lags, {.first = 1, .last = taps, .per_decade = lags_a_decade});
   return settings;
 }
 

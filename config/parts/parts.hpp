@@ -11,26 +11,26 @@
 // each in a file. All others are read, written and described by the lists beside them.
 namespace jostle::inline config {
 
-bool read_value(const OneOf<Container>& form, const Reader& in, Container& into);
+bool read_value(const OneOf<Container>& form, const Reader& reader, Container& target);
 Json written_value(const OneOf<Container>& form, const Container& container);
 Json value_schema(const OneOf<Container>& form, Definitions& definitions);
 
 /// The default observables of a mixture: those that are defined for several sizes.
 std::vector<Observable> default_observables(const std::vector<MixtureKind>& kinds);
 /// The number of equal spheres, or the kinds of a mixture.
-void read_spheres(const Reader& in, Scene& scene);
+void read_spheres(const Reader& reader, Scene& scene);
 Json written_spheres(const Scene& scene);
 Json spheres_schema(Definitions& definitions);
-bool read_part(const Reader& in, MixtureKind& kind);
+bool read_part(const Reader& reader, MixtureKind& kind);
 Json written_part(const MixtureKind& kind);
 Json part_schema(std::type_identity<MixtureKind> type, Definitions& definitions);
 
-bool read_value(const OneOf<StartChoice>& form, const Reader& in, StartChoice& into);
+bool read_value(const OneOf<StartChoice>& form, const Reader& reader, StartChoice& target);
 Json written_value(const OneOf<StartChoice>& form, const StartChoice& start);
 Json value_schema(const OneOf<StartChoice>& form, Definitions& definitions);
-bool read_part(const Reader& in, Crystal& crystal);
+bool read_part(const Reader& reader, Crystal& crystal);
 Json part_schema(std::type_identity<Crystal> type, Definitions& definitions);
-bool read_part(const Reader& in, PackingFile& file);
+bool read_part(const Reader& reader, PackingFile& file);
 Json written_part(const PackingFile& file);
 Json part_schema(std::type_identity<PackingFile> type, Definitions& definitions);
 /// The start as the engine has it; the packing of a file is read later.
@@ -38,34 +38,34 @@ Start engine_start(const StartChoice& choice);
 /// The name of the kind of start in scenes: "pour", ...
 std::string key_of(const StartChoice& start);
 
-bool read_part(const Reader& in, ProtocolLine& line);
+bool read_part(const Reader& reader, ProtocolLine& line);
 Json written_part(const ProtocolLine& line);
 Json part_schema(std::type_identity<ProtocolLine> type, Definitions& definitions);
 
-bool read_value(const OneOf<StopRule>& form, const Reader& in, StopRule& into);
+bool read_value(const OneOf<StopRule>& form, const Reader& reader, StopRule& target);
 Json value_schema(const OneOf<StopRule>& form, Definitions& definitions);
-bool read_part(const Reader& in, Relaxation& relaxation);
+bool read_part(const Reader& reader, Relaxation& relaxation);
 Json written_part(const Relaxation& relaxation);
 Json part_schema(std::type_identity<Relaxation> type, Definitions& definitions);
 
-bool read_part(const Reader& in, DiscreteElement& grains);
+bool read_part(const Reader& reader, DiscreteElement& grains);
 Json written_part(const DiscreteElement& grains);
 Json part_schema(std::type_identity<DiscreteElement> type, Definitions& definitions);
 /// The grains' settings; nothing for Monte Carlo, whose own are "relax" and "relax_start".
-std::optional<DiscreteElement> read_engine(const Reader& in);
+std::optional<DiscreteElement> read_engine(const Reader& reader);
 Json written_engine(const DiscreteElement& grains);
 Json engine_schema(Definitions& definitions);
 
 /// A window of heights that is tapered below the floor.
 std::optional<std::string> part_fault(const BulkFraction& bulk);
 
-bool read_value(const TapNumbers& form, const Reader& in, TapChoice& into);
-bool read_value(const TapNumbers& form, const Reader& in, std::vector<std::uint64_t>& into);
+bool read_value(const TapNumbers& form, const Reader& reader, TapChoice& target);
+bool read_value(const TapNumbers& form, const Reader& reader, std::vector<std::uint64_t>& target);
 Json written_value(const TapNumbers& form, const TapChoice& choice);
 Json written_value(const TapNumbers& form, const std::vector<std::uint64_t>& taps);
 Json value_schema(const TapNumbers& form, Definitions& definitions);
 
-bool read_part(const Reader& in, SnapshotChoice& snapshots);
+bool read_part(const Reader& reader, SnapshotChoice& snapshots);
 Json written_part(const SnapshotChoice& snapshots);
 Json part_schema(std::type_identity<SnapshotChoice> type, Definitions& definitions);
 /// By default everything that the engine has is kept.
@@ -75,26 +75,26 @@ std::optional<std::string> keep_fault(const SnapshotChoice& snapshots, bool grai
 
 /// The form of a sweep.
 struct SweptPointers {};
-bool read_value(const SweptPointers& form, const Reader& in, std::vector<SweepAxis>& sweep);
+bool read_value(const SweptPointers& form, const Reader& reader, std::vector<SweepAxis>& sweep);
 Json written_value(const SweptPointers& form, const std::vector<SweepAxis>& sweep);
 Json value_schema(const SweptPointers& form, Definitions& definitions);
 
-bool read_part(const Reader& in, FitRequest& fit);
+bool read_part(const Reader& reader, FitRequest& fit);
 Json written_part(const FitRequest& fit);
 Json part_schema(std::type_identity<FitRequest> type, Definitions& definitions);
 
-bool read_part(const Reader& in, Region& region);
+bool read_part(const Reader& reader, Region& region);
 Json written_part(const Region& region);
 Json part_schema(std::type_identity<Region> type, Definitions& definitions);
 /// Bond lengths of which there are none.
 std::optional<std::string> part_fault(const HolesSettings& holes);
-bool read_part(const Reader& in, StructureSettings& settings);
+bool read_part(const Reader& reader, StructureSettings& settings);
 Json written_part(const StructureSettings& settings);
 Json part_schema(std::type_identity<StructureSettings> type, Definitions& definitions);
 
 /// The scene of a JSON object, with defaults in the place of what is faulty or missing. Sweeps are
 /// read, not expanded.
-Scene read_scene(const Reader& in);
+Scene read_scene(const Reader& reader);
 
 /// Notes what is at odds in values that are right one by one.
 void check_consistency(const Scene& scene, std::vector<Fault>& faults);

@@ -11,7 +11,7 @@ namespace jostle::inline config {
 namespace {
 
 constexpr std::uint64_t most_strengths = 1000;
-constexpr Range root_range = between(0, 3);
+constexpr Range root_range = closed_range(0, 3);
 
 /// {"from", "to", "step"} or, for what is best stepped in its square root, {"sqrt_from", ...}.
 constexpr auto ramp_fields(Range range, RampScale scale) {
@@ -19,37 +19,37 @@ constexpr auto ramp_fields(Range range, RampScale scale) {
   constexpr std::string_view plain = "a ramp has the keys from, to, step",
                              roots = "a ramp has the keys sqrt_from, sqrt_to, sqrt_step";
   const Notes notes{.required = rooted ? roots : plain};
-  return std::tuple{
-      field(rooted ? "sqrt_from" : "from", &Ramp::from, Number{range}, "", notes),
-      field(rooted ? "sqrt_to" : "to", &Ramp::to, Number{range}, "", notes),
-      field(rooted ? "sqrt_step" : "step", &Ramp::step, Number{above(0, range.high)}, "", notes)};
+  return std::tuple{field(rooted ? "sqrt_from" : "from", &Ramp::start, Number{range}, "", notes),
+                    field(rooted ? "sqrt_to" : "to", &Ramp::end, Number{range}, "", notes),
+                    field(rooted ? "sqrt_step" : "step", &Ramp::step,
+                          Number{left_open_range(0, range.high)}, "", notes)};
 }
 
-bool read_ramp(const Strength& form, const Reader& in, Ramp& ramp) {
+bool read_ramp(const Strength& form, const Reader& reader, Ramp& ramp) {
   const auto plain = ramp_fields(form.range, RampScale::linear),
              rooted = ramp_fields(root_range, RampScale::square_root);
   bool in_roots = false;
   std::vector<std::string> allowed = keys_of(plain);
   for (const std::string& key : keys_of(rooted)) {
-    in_roots = in_roots || (form.in_roots && in.find(key));
+    in_roots = in_roots || (form.in_roots && reader.find(key));
     if (form.in_roots) allowed.push_back(key);
   }
   if (in_roots) allowed = keys_of(rooted);
-  if (!in.is_object_of(allowed)) return false;
+  if (!reader.is_object_of(allowed)) return false;
   ramp.scale = in_roots ? RampScale::square_root : RampScale::linear;
-  std::apply([&](const auto&... field) { (read_field(field, in, ramp), ...); },
+  std::apply([&](const auto&... field) { (read_field(field, reader, ramp), ...); },
              in_roots ? rooted : plain);
-  if (!in.sound()) return false;
+  if (!reader.sound()) return false;
   const auto steps = whole_steps(ramp);
   if (!steps) {
-    const double step = ramp.from > ramp.to ? -ramp.step : ramp.step;
-    const double before = ramp.from + std::floor((ramp.to - ramp.from) / step) * step;
-    in.fault(
+    const double step = ramp.start > ramp.end ? -ramp.step : ramp.step;
+    const double last_strength = ramp.start + std::floor((ramp.end - ramp.start) / step) * step;
+    reader.fault(
         finite_text("steps of {} from {} do not reach {} but {:.6g} and {:.6g}: both ends are "
                     "included, so the step must divide the distance",
-                    ramp.step, ramp.from, ramp.to, before, before + step));
+                    ramp.step, ramp.start, ramp.end, last_strength, last_strength + step));
   } else if (*steps >= most_strengths) {
-    in.fault(fmt::format("{} strengths: a ramp has at most {}", *steps + 1, most_strengths));
+    reader.fault(fmt::format("{} strengths: a ramp has at most {}", *steps + 1, most_strengths));
   }
   return true;
 }
@@ -81,67 +81,67 @@ constexpr std::string_view ramp_required =
     "the strength of a tap in a ramp is an object with the keys from, to, step";
 
 template <class Field, class Part>
-void read_ramped(const Field& field, const Reader& in, Part& part, Ramp&) {
-  read_field(field, in, part);
+void read_ramped(const Field& field, const Reader& reader, Part& part, Ramp&) {
+  read_field(field, reader, part);
 }
 template <class Part>
-void read_ramped(const Field<Part, double, Strength>& field, const Reader& in, Part& part,
+void read_ramped(const Field<Part, double, Strength>& field, const Reader& reader, Part& part,
                  Ramp& ramp) {
   part.*field.member = 0;
-  const auto member = in.find(std::string(field.key));
-  if (!member) return in.missing(field.key, ramp_required);
+  const auto member = reader.find(std::string(field.key));
+  if (!member) return reader.missing(field.key, ramp_required);
   read_ramp(field.form, *member, ramp);
 }
 template <class Part, class Kind, std::size_t n>
-void read_ramped(const KeyedNumber<Part, Kind, n>& field, const Reader& in, Part& part,
+void read_ramped(const KeyedNumber<Part, Kind, n>& field, const Reader& reader, Part& part,
                  Ramp& ramp) {
   part.*field.value = 0;
-  const auto member = read_kind(field, in, part);
-  if (!member) return in.missing(field.keys[0].first, ramp_required);
+  const auto member = read_kind(field, reader, part);
+  if (!member) return reader.missing(field.keys[0].first, ramp_required);
   read_ramp({field.forms[0].range}, *member, ramp);
 }
 
 template <class Field, class Part>
-void write_ramped(const Field& field, const Part& part, const Ramp&, Json& out) {
-  write_field(field, part, out);
+void write_ramped(const Field& field, const Part& part, const Ramp&, Json& json) {
+  write_field(field, part, json);
 }
 template <class Part>
 void write_ramped(const Field<Part, double, Strength>& field, const Part&, const Ramp& ramp,
-                  Json& out) {
-  out[field.key] = written_ramp(ramp);
+                  Json& json) {
+  json[field.key] = written_ramp(ramp);
 }
 template <class Part, class Kind, std::size_t n>
 void write_ramped(const KeyedNumber<Part, Kind, n>& field, const Part& part, const Ramp& ramp,
-                  Json& out) {
-  out[name_in(field.keys, part.*field.kind)] = written_ramp(ramp);
+                  Json& json) {
+  json[name_in(field.keys, part.*field.kind)] = written_ramp(ramp);
 }
 
 template <class Field>
-void describe_ramped(const Field& field, ObjectSchema& out, Definitions& definitions) {
-  describe_field(field, out, definitions);
+void describe_ramped(const Field& field, ObjectSchema& schema, Definitions& definitions) {
+  describe_field(field, schema, definitions);
 }
 template <class Part>
-void describe_ramped(const Field<Part, double, Strength>& field, ObjectSchema& out,
+void describe_ramped(const Field<Part, double, Strength>& field, ObjectSchema& schema,
                      Definitions& definitions) {
-  out.properties[field.key] = ramp_schema(field.form, definitions);
-  out.required.emplace_back(field.key);
+  schema.properties[field.key] = ramp_schema(field.form, definitions);
+  schema.required.emplace_back(field.key);
 }
 template <class Part, class Kind, std::size_t n>
-void describe_ramped(const KeyedNumber<Part, Kind, n>& field, ObjectSchema& out,
+void describe_ramped(const KeyedNumber<Part, Kind, n>& field, ObjectSchema& schema,
                      Definitions& definitions) {
-  describe_kinds(field, true, out, [&](const Number& form, std::string_view text, const auto&) {
+  describe_kinds(field, true, schema, [&](const Number& form, std::string_view text, const auto&) {
     return described_as(ramp_schema({form.range}, definitions), "", sentence_of(text, form.unit),
                         std::nullopt, "");
   });
 }
 
 /// {"dilate": ramp} or {"shake": {"lambda": ramp, ...}}
-void read_ramped_tap(const Reader& in, ProtocolLine& line) {
-  const auto choice = in.choice(names_of<Tap>());
+void read_ramped_tap(const Reader& reader, ProtocolLine& line) {
+  const auto choice = reader.choice(names_of<Tap>());
   Ramp& ramp = line.ramp.emplace();
   if (!choice) return;
   for_each_alternative<Tap>([&]<class Part>(std::type_identity<Part>) {
-    if (choice->name != Part::about.name) return;
+    if (choice->name != Part::description.name) return;
     Part part{};
     if constexpr (Bare<Part>) {
       constexpr auto only = std::get<0>(Part::fields());
@@ -162,10 +162,10 @@ Json written_ramped_tap(const Tap& tap, const Ramp& ramp) {
         if constexpr (Bare<Part>) {
           return written_ramp(ramp);
         } else {
-          Json out = Json::object();
-          std::apply([&](const auto&... field) { (write_ramped(field, part, ramp, out), ...); },
+          Json json = Json::object();
+          std::apply([&](const auto&... field) { (write_ramped(field, part, ramp, json), ...); },
                      Part::fields());
-          return out;
+          return json;
         }
       },
       tap);
@@ -177,16 +177,16 @@ Json ramped_taps_schema(Definitions& definitions) {
   taps.rules = {{"minProperties", 1}, {"maxProperties", 1}};
   for_each_alternative<Tap>([&]<class Part>(std::type_identity<Part>) {
     if constexpr (Bare<Part>) {
-      taps.properties[Part::about.name] =
+      taps.properties[Part::description.name] =
           described_as(ramp_schema(std::get<0>(Part::fields()).form, definitions), "",
-                       sentence_of(Part::about.text, ""), std::nullopt, "");
+                       sentence_of(Part::description.text, ""), std::nullopt, "");
     } else {
       ObjectSchema settings;
       std::apply(
           [&](const auto&... field) { (describe_ramped(field, settings, definitions), ...); },
           Part::fields());
-      taps.properties[Part::about.name] =
-          described_as(settings.json(), "", sentence_of(Part::about.text, ""), std::nullopt, "");
+      taps.properties[Part::description.name] = described_as(
+          settings.json(), "", sentence_of(Part::description.text, ""), std::nullopt, "");
     }
   });
   return taps.json();
@@ -199,27 +199,27 @@ constexpr std::tuple count_field{field(
 
 }  // namespace
 
-bool read_part(const Reader& in, ProtocolLine& line) {
-  if (!in.is_object_of({"tap", "ramp", "count"})) return false;
-  const auto tap = in.find("tap");
-  const auto ramp = in.find("ramp");
+bool read_part(const Reader& reader, ProtocolLine& line) {
+  if (!reader.is_object_of({"tap", "ramp", "count"})) return false;
+  const auto tap = reader.find("tap");
+  const auto ramp = reader.find("ramp");
   if (tap) read_value(OneOf<Tap>{}, *tap, line.tap);
   if (ramp) read_ramped_tap(*ramp, line);
-  if (tap && ramp) in.fault("expected only one of the keys tap, ramp");
-  if (!tap && !ramp) in.fault("expected one of the keys tap, ramp");
-  read_field(std::get<0>(count_field), in, line);
+  if (tap && ramp) reader.fault("expected only one of the keys tap, ramp");
+  if (!tap && !ramp) reader.fault("expected one of the keys tap, ramp");
+  read_field(std::get<0>(count_field), reader, line);
   return true;
 }
 
 Json written_part(const ProtocolLine& line) {
-  Json out = Json::object();
+  Json json = Json::object();
   if (line.ramp) {
-    out["ramp"] = written_ramped_tap(line.tap, *line.ramp);
+    json["ramp"] = written_ramped_tap(line.tap, *line.ramp);
   } else {
-    out["tap"] = written_value(OneOf<Tap>{}, line.tap);
+    json["tap"] = written_value(OneOf<Tap>{}, line.tap);
   }
-  out.update(written_object(count_field, line));
-  return out;
+  json.update(written_object(count_field, line));
+  return json;
 }
 
 Json part_schema(std::type_identity<ProtocolLine>, Definitions& definitions) {

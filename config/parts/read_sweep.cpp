@@ -24,27 +24,27 @@ Json with_plain_numbers(const Json& value) {
 }
 
 /// One pointer with its values, put at the end of an axis.
-void read_column(const Reader& in, const std::string& pointer, SweepAxis& axis) {
+void read_column(const Reader& reader, const std::string& pointer, SweepAxis& axis) {
   if (!pointer.starts_with('/')) {
-    in.fault("expected a JSON pointer, which begins with /");
+    reader.fault("expected a JSON pointer, which begins with /");
     return;
   }
-  if (!in.is_list(1, most_values, "values")) return;
+  if (!reader.is_list(1, most_values, "values")) return;
   auto& [name, values] = axis.columns.emplace_back();
   name = pointer;
-  for (const Json& value : in.value().elements()) values.push_back(with_plain_numbers(value));
+  for (const Json& value : reader.value().elements()) values.push_back(with_plain_numbers(value));
 }
 
 /// {"/a": [...], "/b": [...]}: lists of one length that vary together.
-void read_zipped(const Reader& in, std::vector<SweepAxis>& sweep) {
-  if (!in.value().is_object() || in.value().empty()) {
-    in.fault("expected an object of JSON pointers with lists of values, found " +
-             described(in.value()));
+void read_zipped(const Reader& reader, std::vector<SweepAxis>& sweep) {
+  if (!reader.value().is_object() || reader.value().empty()) {
+    reader.fault("expected an object of JSON pointers with lists of values, found " +
+                 described(reader.value()));
     return;
   }
   SweepAxis axis;
-  for (const auto& [pointer, values] : in.value().members()) {
-    read_column(*in.find(pointer), pointer, axis);
+  for (const auto& [pointer, values] : reader.value().members()) {
+    read_column(*reader.find(pointer), pointer, axis);
   }
   const bool uneven =
       std::any_of(axis.columns.begin(), axis.columns.end(),
@@ -54,7 +54,7 @@ void read_zipped(const Reader& in, std::vector<SweepAxis>& sweep) {
     for (const auto& [pointer, values] : axis.columns) {
       lengths.push_back(fmt::format("{} has {}", pointer, values.size()));
     }
-    in.fault("zipped lists must have the same length: " + listed(lengths));
+    reader.fault("zipped lists must have the same length: " + listed(lengths));
     return;
   }
   if (axis.size() > 0) sweep.push_back(std::move(axis));
@@ -62,14 +62,14 @@ void read_zipped(const Reader& in, std::vector<SweepAxis>& sweep) {
 
 }  // namespace
 
-bool read_value(const SweptPointers&, const Reader& in, std::vector<SweepAxis>& sweep) {
-  if (!in.value().is_object()) {
-    in.fault("expected an object of JSON pointers with lists of values, found " +
-             described(in.value()));
+bool read_value(const SweptPointers&, const Reader& reader, std::vector<SweepAxis>& sweep) {
+  if (!reader.value().is_object()) {
+    reader.fault("expected an object of JSON pointers with lists of values, found " +
+                 described(reader.value()));
     return false;
   }
-  for (const auto& [key, value] : in.value().members()) {
-    const Reader member = *in.find(key);
+  for (const auto& [key, value] : reader.value().members()) {
+    const Reader member = *reader.find(key);
     if (key == "zip" && value.is_array()) {
       for (std::size_t i = 0; i < value.size(); ++i) read_zipped(member.element(i), sweep);
     } else if (key == "zip") {
@@ -86,7 +86,7 @@ bool read_value(const SweptPointers&, const Reader& in, std::vector<SweepAxis>& 
 }
 
 Json written_value(const SweptPointers&, const std::vector<SweepAxis>& sweep) {
-  Json out = Json::object();
+  Json json = Json::object();
   // A later axis must not overtake an earlier one: from the first zipped axis on, all are zipped.
   bool zipped = false;
   for (const SweepAxis& axis : sweep) {
@@ -94,12 +94,12 @@ Json written_value(const SweptPointers&, const std::vector<SweepAxis>& sweep) {
     Json columns = Json::object();
     for (const auto& [pointer, values] : axis.columns) columns[pointer] = values;
     if (zipped) {
-      out["zip"].push_back(columns);
+      json["zip"].push_back(columns);
     } else {
-      out.update(columns);
+      json.update(columns);
     }
   }
-  return out;
+  return json;
 }
 
 Json value_schema(const SweptPointers&, Definitions&) {

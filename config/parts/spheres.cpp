@@ -16,22 +16,22 @@ struct DiameterForm {};
 using SpreadDiameter =
     std::variant<LognormalDiameter, NormalDiameter, UniformDiameter, ListedDiameters>;
 
-bool read_value(const DiameterForm&, const Reader& in, DiameterLaw& into) {
-  if (in.value().is_number()) {
+bool read_value(const DiameterForm&, const Reader& reader, DiameterLaw& target) {
+  if (reader.value().is_number()) {
     FixedDiameter fixed;
-    const bool read = read_value(diameter_form, in, fixed.value);
-    into = fixed;
+    const bool read = read_value(diameter_form, reader, fixed.value);
+    target = fixed;
     return read;
   }
-  if (!in.value().is_object()) {
-    in.wrong_type(fmt::format("{}, or an object with one of the keys {}", expected(diameter_form),
-                              listed(names_of<SpreadDiameter>())));
+  if (!reader.value().is_object()) {
+    reader.wrong_type(fmt::format("{}, or an object with one of the keys {}",
+                                  expected(diameter_form), listed(names_of<SpreadDiameter>())));
     return false;
   }
   SpreadDiameter spread;
-  if (!read_value(OneOf<SpreadDiameter>{}, in, spread)) return false;
-  std::visit([&](auto& law) { into = std::move(law); }, spread);
-  return in.sound();
+  if (!read_value(OneOf<SpreadDiameter>{}, reader, spread)) return false;
+  std::visit([&](auto& law) { target = std::move(law); }, spread);
+  return reader.sound();
 }
 Json written_value(const DiameterForm&, const DiameterLaw& diameter) {
   return std::visit(
@@ -51,12 +51,12 @@ Json value_schema(const DiameterForm&, Definitions& definitions) {
 
 /// [x, y]
 struct PlaceForm {};
-constexpr Number coordinate_form{between(0, widest_container), "diameters"};
+constexpr Number coordinate_form{closed_range(0, widest_container), "diameters"};
 
-bool read_value(const PlaceForm&, const Reader& in, std::array<double, 2>& place) {
-  if (!in.is_list(2, 2, "numbers, x and y")) return false;
-  const bool x = read_value(coordinate_form, in.element(0), place[0]);
-  const bool y = read_value(coordinate_form, in.element(1), place[1]);
+bool read_value(const PlaceForm&, const Reader& reader, std::array<double, 2>& place) {
+  if (!reader.is_list(2, 2, "numbers, x and y")) return false;
+  const bool x = read_value(coordinate_form, reader.element(0), place[0]);
+  const bool y = read_value(coordinate_form, reader.element(1), place[1]);
   return x && y;
 }
 Json written_value(const PlaceForm&, const std::array<double, 2>& place) {
@@ -78,7 +78,7 @@ constexpr std::tuple kind_fields{
     field("diameter", &MixtureKind::diameter, DiameterForm{},
           "One diameter for all spheres of the kind, or a law from which every realization draws "
           "them"),
-    field("density", &MixtureKind::density, Number{between(least_density, greatest_density)},
+    field("density", &MixtureKind::density, Number{closed_range(least_density, greatest_density)},
           "Density relative to that of a sphere of mass 1 and diameter 1"),
     field("place", &MixtureKind::place, PlaceForm{},
           "x and y of the place above which a single sphere is poured, diameters; it is poured "
@@ -87,14 +87,14 @@ constexpr std::tuple kind_fields{
 
 }  // namespace
 
-bool read_part(const Reader& in, MixtureKind& kind) {
-  if (!read_object(kind_fields, in, kind)) return false;
-  const auto diameter = in.find("diameter");
-  if (diameter && in.sound()) {
+bool read_part(const Reader& reader, MixtureKind& kind) {
+  if (!read_object(kind_fields, reader, kind)) return false;
+  const auto diameter = reader.find("diameter");
+  if (diameter && reader.sound()) {
     if (const auto fault = diameter_fault(kind.diameter, kind.count)) diameter->fault(*fault);
   }
-  const auto place = in.find("place");
-  if (place && in.sound() && kind.count != 1)
+  const auto place = reader.find("place");
+  if (place && reader.sound() && kind.count != 1)
     place->fault(
         fmt::format("a place is that of one sphere, and the kind has {}: set \"count\" to "
                     "1, or leave the place out",
@@ -108,19 +108,19 @@ Json part_schema(std::type_identity<MixtureKind>, Definitions& definitions) {
   return object_schema(kind_fields, definitions).json();
 }
 
-void read_spheres(const Reader& in, Scene& scene) {
-  if (!in.value().is_array()) {
-    if (in.value().is_number()) {
-      read_value(count_form, in, scene.n_spheres);
+void read_spheres(const Reader& reader, Scene& scene) {
+  if (!reader.value().is_array()) {
+    if (reader.value().is_number()) {
+      read_value(count_form, reader, scene.n_spheres);
     } else {
-      in.wrong_type(expected(count_form) + ", or a list of kinds of spheres");
+      reader.wrong_type(expected(count_form) + ", or a list of kinds of spheres");
     }
     return;
   }
-  read_value(kinds_form, in, scene.kinds);
-  if (!in.sound()) return;
-  for (std::string& fault : mixture_faults(scene.kinds)) in.fault(std::move(fault));
-  if (in.sound()) scene.n_spheres = static_cast<std::uint32_t>(n_spheres_of(scene.kinds));
+  read_value(kinds_form, reader, scene.kinds);
+  if (!reader.sound()) return;
+  for (std::string& fault : mixture_faults(scene.kinds)) reader.fault(std::move(fault));
+  if (reader.sound()) scene.n_spheres = static_cast<std::uint32_t>(n_spheres_of(scene.kinds));
 }
 
 Json written_spheres(const Scene& scene) {

@@ -21,14 +21,14 @@ constexpr bool is_pour =
 std::vector<std::string> start_names() {
   std::vector<std::string> names{std::string(pour_key)};
   for_each_alternative<StartChoice>([&]<class Part>(std::type_identity<Part>) {
-    if (!is_pour<Part>) names.emplace_back(Part::about.name);
+    if (!is_pour<Part>) names.emplace_back(Part::description.name);
   });
   return names;
 }
 
-void read_pour(const Reader& in, StartChoice& into) {
+void read_pour(const Reader& reader, StartChoice& target) {
   // A setting of the former rule: random moves of every sphere.
-  if (const auto fitted = in.find("fitted")) {
+  if (const auto fitted = reader.find("fitted")) {
     for (const std::string moves : {"max_step", "max_sweeps"}) {
       if (const auto key = fitted->find(moves))
         return key->fault(
@@ -38,8 +38,8 @@ void read_pour(const Reader& in, StartChoice& into) {
     }
   }
   Pour pour;
-  read_value(pour_form, in, pour);
-  std::visit([&](const auto& kind) { into = kind; }, pour);
+  read_value(pour_form, reader, pour);
+  std::visit([&](const auto& kind) { target = kind; }, pour);
 }
 
 /// The name of a file with a packing, by its ending: "h5|hdf5".
@@ -58,12 +58,12 @@ bool ends_with_one_of(std::string_view path, std::string_view endings) {
   return false;
 }
 
-bool read_value(const PackingPath& form, const Reader& in, std::string& into) {
-  const auto path = in.text();
+bool read_value(const PackingPath& form, const Reader& reader, std::string& target) {
+  const auto path = reader.text();
   if (!path) return false;
-  into = *path;
-  if (ends_with_one_of(into, form.endings)) return true;
-  in.fault(
+  target = *path;
+  if (ends_with_one_of(target, form.endings)) return true;
+  reader.fault(
       "a packing file must end in .h5 or .hdf5 (results of an earlier run), or in .xyz or "
       ".extxyz (extended XYZ)");
   return false;
@@ -88,7 +88,7 @@ constexpr std::tuple of_results{
     field("tap", &PackingFile::tap, number_or_last)};
 constexpr std::tuple of_xyz{field("frame", &PackingFile::frame, number_or_last)};
 constexpr std::tuple of_both{
-    field("overlap", &PackingFile::overlap, Number{between(0, deepest_given_overlap)},
+    field("overlap", &PackingFile::overlap, Number{closed_range(0, deepest_given_overlap)},
           "The deepest overlap that is accepted, diameters; above 0 with discrete elements only",
           {.unless_default = true})};
 
@@ -98,24 +98,24 @@ constexpr auto all_fields = std::tuple_cat(path_of(all_endings), of_results, of_
 
 }  // namespace
 
-bool read_part(const Reader& in, Crystal& crystal) {
-  if (in.value().is_string()) return read_value(word(lattices), in, crystal.lattice);
-  return read_object(Crystal::fields(), in, crystal);
+bool read_part(const Reader& reader, Crystal& crystal) {
+  if (reader.value().is_string()) return read_value(word(lattices), reader, crystal.lattice);
+  return read_object(Crystal::fields(), reader, crystal);
 }
 Json part_schema(std::type_identity<Crystal>, Definitions& definitions) {
   return either(value_schema(word(lattices), definitions),
                 object_schema(Crystal::fields(), definitions).json());
 }
 
-bool read_part(const Reader& in, PackingFile& file) {
-  if (in.value().is_string()) return read_value(PackingPath{all_endings}, in, file.path);
-  const Json* path = in.value().find("path");
+bool read_part(const Reader& reader, PackingFile& file) {
+  if (reader.value().is_string()) return read_value(PackingPath{all_endings}, reader, file.path);
+  const Json* path = reader.value().find("path");
   if (path != nullptr && path->is_string()) {
     if (ends_with_one_of(path->text(), results_endings))
-      return read_object(results_fields, in, file);
-    if (ends_with_one_of(path->text(), xyz_endings)) return read_object(xyz_fields, in, file);
+      return read_object(results_fields, reader, file);
+    if (ends_with_one_of(path->text(), xyz_endings)) return read_object(xyz_fields, reader, file);
   }
-  return read_object(all_fields, in, file);
+  return read_object(all_fields, reader, file);
 }
 Json written_part(const PackingFile& file) {
   return ends_with_one_of(file.path, xyz_endings) ? written_object(xyz_fields, file)
@@ -127,13 +127,13 @@ Json part_schema(std::type_identity<PackingFile>, Definitions& definitions) {
                                  object_schema(xyz_fields, definitions).json()})}};
 }
 
-bool read_value(const OneOf<StartChoice>&, const Reader& in, StartChoice& into) {
-  const auto start = in.choice(start_names());
+bool read_value(const OneOf<StartChoice>&, const Reader& reader, StartChoice& target) {
+  const auto start = reader.choice(start_names());
   if (!start) return false;
   if (start->name == pour_key) {
-    read_pour(start->settings, into);
+    read_pour(start->settings, target);
   } else {
-    read_alternative(start->name, start->settings, into);
+    read_alternative(start->name, start->settings, target);
   }
   return true;
 }
@@ -184,7 +184,7 @@ Start engine_start(const StartChoice& choice) {
 std::string key_of(const StartChoice& start) {
   return std::visit(
       []<class Part>(const Part& part) {
-        return std::string(is_pour<Part> ? pour_key : part.about.name);
+        return std::string(is_pour<Part> ? pour_key : part.description.name);
       },
       start);
 }

@@ -14,7 +14,7 @@ namespace {
 /// A region as scenes write it.
 constexpr auto region_heights = height_bounds;
 constexpr auto from_sides = field("from_sides", &Region::from_sides,
-                                  Number{between(0, 1e6), "diameters"}, "Distance from walls");
+                                  Number{closed_range(0, 1e6), "diameters"}, "Distance from walls");
 constexpr std::tuple region_fields{irregular(
                                        "heights",
                                        [](const Reader& object, Region& region) {
@@ -26,14 +26,14 @@ constexpr std::tuple region_fields{irregular(
                                          region.low = window.low;
                                          region.high = window.high;
                                        },
-                                       [](const Region& region, Json& out) {
-                                         out["heights"] = written_bounds(region.low, region.high);
+                                       [](const Region& region, Json& json) {
+                                         json["heights"] = written_bounds(region.low, region.high);
                                        },
-                                       [](ObjectSchema& out, Definitions& definitions) {
-                                         out.properties["heights"] = described_as(
+                                       [](ObjectSchema& schema, Definitions& definitions) {
+                                         schema.properties["heights"] = described_as(
                                              value_schema(region_heights, definitions), "",
                                              "Low and high, diameters.", std::nullopt, "");
-                                         out.required.emplace_back("heights");
+                                         schema.required.emplace_back("heights");
                                        }),
                                    from_sides};
 
@@ -49,9 +49,9 @@ void for_each_part(Settings& settings, const Act& act) {
 
 }  // namespace
 
-bool read_part(const Reader& in, Region& region) {
+bool read_part(const Reader& reader, Region& region) {
   region = pore_region;
-  return read_object(region_fields, in, region);
+  return read_object(region_fields, reader, region);
 }
 Json written_part(const Region& region) {
   return written_object(region_fields, region);
@@ -69,8 +69,8 @@ std::optional<std::string> part_fault(const HolesSettings& holes) {
                      bonds.first, bonds.last);
 }
 
-bool read_part(const Reader& in, StructureSettings& settings) {
-  return read_object(StructureSettings::fields(), in, settings);
+bool read_part(const Reader& reader, StructureSettings& settings) {
+  return read_object(StructureSettings::fields(), reader, settings);
 }
 Json written_part(const StructureSettings& settings) {
   return written_object(StructureSettings::fields(), settings);

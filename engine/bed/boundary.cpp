@@ -16,7 +16,7 @@ double into_period(double x, double width) {
 }  // namespace
 
 Boundary::Boundary(const Container& container) {
-  std::visit([this](const auto& one) { static_cast<ContainerShape&>(*this) = one.shape(); },
+  std::visit([this](const auto& box) { static_cast<ContainerShape&>(*this) = box.shape(); },
              container);
   const Vec3 extent = jostle::extent(container);
   width_x = extent.x;
@@ -62,8 +62,8 @@ bool in_footprint(const Boundary& boundary, Vec3 r, double from_sides) {
     const double x = r.x - boundary.axis(), y = r.y - boundary.axis();
     return reach >= 0 && x * x + y * y <= reach * reach;
   }
-  const auto inside = [&](double at, double width) {
-    return at >= from_sides && at <= width - from_sides;
+  const auto inside = [&](double coordinate, double width) {
+    return coordinate >= from_sides && coordinate <= width - from_sides;
   };
   return (!boundary.planes_x() || inside(r.x, boundary.width_x)) &&
          (!boundary.planes_y() || inside(r.y, boundary.width_y));
@@ -77,8 +77,8 @@ Vec3 into_periods(const Boundary& boundary, Vec3 r) {
 }
 
 double boundary_depth(const Boundary& boundary, Vec3 r) {
-  const auto beyond = [](double at, double width) {
-    return std::max(sphere_radius - at, at - (width - sphere_radius));
+  const auto beyond = [](double coordinate, double width) {
+    return std::max(sphere_radius - coordinate, coordinate - (width - sphere_radius));
   };
   if (boundary.tube) {
     const double dx = r.x - boundary.axis(), dy = r.y - boundary.axis();

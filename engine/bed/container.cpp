@@ -18,10 +18,11 @@ std::string plain(double value) {
   return text;
 }
 
-std::optional<std::string> too_narrow(const char* what, double width, double least,
+std::optional<std::string> too_narrow(const char* side_name, double width, double least,
                                       bool exclusive) {
   if (std::isfinite(width) && (exclusive ? width > least : width >= least)) return std::nullopt;
-  return std::string(what) + " is " + plain(width) + " diameters: the least is " + plain(least) +
+  return std::string(side_name) + " is " + plain(width) + " diameters: the least is " +
+         plain(least) +
          (exclusive ? " (exclusive), or a sphere would meet its own image"
                     : ", or no sphere fits inside");
 }
@@ -56,7 +57,7 @@ std::optional<std::string> width_fault(const Container& container) {
 }
 
 std::string name_of(const Container& container) {
-  return std::visit([](const auto& one) { return std::string(one.about.name); }, container);
+  return std::visit([](const auto& box) { return std::string(box.description.name); }, container);
 }
 
 namespace {
@@ -75,20 +76,20 @@ void for_each_kind(const Act& act) {
 
 std::vector<std::string> container_names() {
   std::vector<std::string> names;
-  for_each_kind([&](const auto& kind) { names.emplace_back(kind.about.name); });
+  for_each_kind([&](const auto& kind) { names.emplace_back(kind.description.name); });
   return names;
 }
 
 std::optional<Container> container_of(std::string_view name, Vec3 extent) {
   std::optional<Container> found;
   for_each_kind([&](const auto& kind) {
-    if (name == kind.about.name) found = kind.of(extent);
+    if (name == kind.description.name) found = kind.with_extent(extent);
   });
   return found;
 }
 
 Vec3 extent(const Container& container) {
-  return std::visit([](const auto& one) { return one.extent(); }, container);
+  return std::visit([](const auto& box) { return box.extent(); }, container);
 }
 
 double width_x(const Container& container) {

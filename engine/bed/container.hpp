@@ -40,8 +40,9 @@ inline constexpr double widest_container = 10'000;
 inline constexpr std::uint32_t most_spheres = 10'000'000;
 
 /// The widths of a box in scenes: one number, or two.
-inline constexpr Range periodic_width_range = above(least_periodic_width, widest_container);
-inline constexpr Range walled_width_range = between(least_walled_width, widest_container);
+inline constexpr Range periodic_width_range =
+    left_open_range(least_periodic_width, widest_container);
+inline constexpr Range walled_width_range = closed_range(least_walled_width, widest_container);
 template <class Box>
 constexpr NumberPair<Box> widths(double Box::*x, double Box::*y, Range range) {
   return {"width",
@@ -61,10 +62,10 @@ struct PeriodicBox {
 
   static constexpr ContainerShape shape() { return {.periodic_x = true, .periodic_y = true}; }
   Vec3 extent() const { return {width_x, width_y, 0}; }
-  static PeriodicBox of(Vec3 extent) { return {extent.x, extent.y}; }
+  static PeriodicBox with_extent(Vec3 extent) { return {extent.x, extent.y}; }
   bool operator==(const PeriodicBox&) const = default;
 
-  static constexpr About about{.name = "periodic", .title = "Periodic sides"};
+  static constexpr Description description{.name = "periodic", .title = "Periodic sides"};
   static constexpr auto fields() {
     return std::tuple{widths(&PeriodicBox::width_x, &PeriodicBox::width_y, periodic_width_range)};
   }
@@ -77,10 +78,10 @@ struct WalledBox {
 
   static constexpr ContainerShape shape() { return {}; }
   Vec3 extent() const { return {width_x, width_y, 0}; }
-  static WalledBox of(Vec3 extent) { return {extent.x, extent.y}; }
+  static WalledBox with_extent(Vec3 extent) { return {extent.x, extent.y}; }
   bool operator==(const WalledBox&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       .name = "walls", .text = "four vertical planes", .title = "Four walls"};
   static constexpr auto fields() {
     return std::tuple{widths(&WalledBox::width_x, &WalledBox::width_y, walled_width_range)};
@@ -93,10 +94,11 @@ struct Cylinder {
 
   static constexpr ContainerShape shape() { return {.tube = true}; }
   Vec3 extent() const { return {diameter, diameter, 0}; }
-  static Cylinder of(Vec3 extent) { return {extent.x}; }
+  static Cylinder with_extent(Vec3 extent) { return {extent.x}; }
   bool operator==(const Cylinder&) const = default;
 
-  static constexpr About about{.name = "cylinder", .text = "a tube", .title = "A cylinder"};
+  static constexpr Description description{
+      .name = "cylinder", .text = "a tube", .title = "A cylinder"};
   static constexpr auto fields() {
     return std::tuple{field("diameter", &Cylinder::diameter, Number{walled_width_range},
                             "Diameter of a cylinder, in diameters of a sphere",
@@ -112,10 +114,10 @@ struct FullyPeriodicBox {
     return {.periodic_x = true, .periodic_y = true, .periodic_z = true};
   }
   Vec3 extent() const { return {width_x, width_y, height}; }
-  static FullyPeriodicBox of(Vec3 extent) { return {extent.x, extent.y, extent.z}; }
+  static FullyPeriodicBox with_extent(Vec3 extent) { return {extent.x, extent.y, extent.z}; }
   bool operator==(const FullyPeriodicBox&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       .name = "fully_periodic",
       .text = "periodic in z too and without gravity (the hard-sphere fluid)",
       .title = "A fully periodic box"};
@@ -134,10 +136,10 @@ struct Plates {
 
   static constexpr ContainerShape shape() { return {.periodic_x = true}; }
   Vec3 extent() const { return {width, gap, 0}; }
-  static Plates of(Vec3 extent) { return {extent.x, extent.y}; }
+  static Plates with_extent(Vec3 extent) { return {extent.x, extent.y}; }
   bool operator==(const Plates&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       .name = "plates", .text = "periodic along x, two plates across y", .title = "Two plates"};
   static constexpr auto fields() {
     return std::tuple{

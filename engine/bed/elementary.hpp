@@ -71,8 +71,8 @@ struct SineCosine {
 /// Branch-free, so that loops vectorise.
 [[gnu::always_inline]] inline double natural_log(double x) {
   // x = 2^k m with m in [sqrt(1/2), sqrt(2)).
-  constexpr std::uint64_t root_half = 0x3fe6a09e00000000u, one = 0x3ff0000000000000u;
-  const std::uint64_t bits = __builtin_bit_cast(std::uint64_t, x) + (one - root_half);
+  constexpr std::uint64_t root_half = 0x3fe6a09e00000000u, unit = 0x3ff0000000000000u;
+  const std::uint64_t bits = __builtin_bit_cast(std::uint64_t, x) + (unit - root_half);
   const double k = static_cast<double>(static_cast<std::int32_t>(bits >> 52) - 1023);
   const double f = __builtin_bit_cast(double, (bits & 0xfffffffffffffu) + root_half) - 1.0;
   const double s = f / (2.0 + f);

@@ -56,12 +56,12 @@ template <Shaped Box>
 bool clear_of_boundaries(const Box& box, Vec3 r, double radius = sphere_radius) {
   const ContainerShape shape = box.shape();
   const Vec3 extent = box.extent();
-  const auto between = [radius](double at, double width) {
-    return at >= radius && at <= width - radius;
+  const auto is_between = [radius](double coordinate, double width) {
+    return coordinate >= radius && coordinate <= width - radius;
   };
   if (shape.has_floor() && !(r.z >= radius)) return false;
-  if (shape.planes_x() && !between(r.x, extent.x)) return false;
-  if (shape.planes_y() && !between(r.y, extent.y)) return false;
+  if (shape.planes_x() && !is_between(r.x, extent.x)) return false;
+  if (shape.planes_y() && !is_between(r.y, extent.y)) return false;
   if (!shape.tube) return true;
   const double axis = 0.5 * extent.x;
   const double dx = r.x - axis, dy = r.y - axis, reach = axis - radius;

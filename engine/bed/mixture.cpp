@@ -67,7 +67,7 @@ struct RangeOf {
     const double reach = cut_of_diameter_laws * law.deviation;
     return {law.mean - reach, law.mean + reach};
   }
-  DiameterRange operator()(const UniformDiameter& law) const { return {law.from, law.to}; }
+  DiameterRange operator()(const UniformDiameter& law) const { return {law.smallest, law.largest}; }
   DiameterRange operator()(const ListedDiameters& law) const {
     const auto [least, greatest] = std::ranges::minmax_element(law.values);
     return {*least, *greatest};
@@ -87,7 +87,7 @@ struct Draw {
     return law.mean + law.deviation * cut_normal(random);
   }
   double operator()(const UniformDiameter& law) const {
-    return law.from + (law.to - law.from) * random.uniform();
+    return law.smallest + (law.largest - law.smallest) * random.uniform();
   }
   double operator()(const ListedDiameters& law) const { return law.values[place]; }
 };
@@ -113,8 +113,8 @@ struct NumbersFault {
     return spread_fault(law.mean, law.deviation);
   }
   Fault operator()(const UniformDiameter& law) const {
-    if (law.from <= law.to) return std::nullopt;
-    return "diameters from " + diameter_text(law.from) + " to " + diameter_text(law.to) +
+    if (law.smallest <= law.largest) return std::nullopt;
+    return "diameters from " + diameter_text(law.smallest) + " to " + diameter_text(law.largest) +
            " are given: the first must not exceed the second";
   }
   Fault operator()(const ListedDiameters& law) const {
@@ -179,10 +179,10 @@ std::optional<std::string> width_fault(const Container& container, double larges
   const Boundary boundary(container);
   const char* const sides =
       std::holds_alternative<Cylinder>(container) ? "cylinder diameter" : "width between walls";
-  const auto narrow = [&](bool periodic, const char* what, double width) -> Fault {
+  const auto narrow = [&](bool periodic, const char* side_name, double width) -> Fault {
     const double least = periodic ? 2 * largest_diameter : largest_diameter;
     if (periodic ? width > least : width >= least) return std::nullopt;
-    return std::string(what) + " is " + diameter_text(width) + " diameters: with spheres of " +
+    return std::string(side_name) + " is " + diameter_text(width) + " diameters: with spheres of " +
            diameter_text(largest_diameter) + " it must " + (periodic ? "exceed " : "be at least ") +
            diameter_text(least);
   };

@@ -23,9 +23,9 @@ inline constexpr double cut_of_diameter_laws = 3;
 /// Kinds of a mixture, at most.
 inline constexpr std::size_t most_kinds = 1000;
 /// The diameters that spheres may have.
-inline constexpr Number diameter_form{between(least_diameter, greatest_diameter), "diameters"};
+inline constexpr Number diameter_form{closed_range(least_diameter, greatest_diameter), "diameters"};
 /// Standard deviations of diameters.
-inline constexpr Number diameter_deviation_form{between(0, greatest_diameter), "diameters"};
+inline constexpr Number diameter_deviation_form{closed_range(0, greatest_diameter), "diameters"};
 
 /// All spheres of one diameter.
 struct FixedDiameter {
@@ -39,7 +39,7 @@ struct LognormalDiameter {
   double mean = 1, deviation = 0.1;
   bool operator==(const LognormalDiameter&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "lognormal",
       "The logarithm of the diameter is normal, cut at 3 standard deviations; mean and deviation "
       "are those of the diameter without the cut"};
@@ -55,7 +55,7 @@ struct NormalDiameter {
   double mean = 1, deviation = 0.1;
   bool operator==(const NormalDiameter&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "normal", "Normal, cut at 3 standard deviations; mean and deviation without the cut"};
   static constexpr auto fields() {
     return std::tuple{field("mean", &NormalDiameter::mean, diameter_form),
@@ -66,13 +66,13 @@ struct NormalDiameter {
 
 /// Uniform in [from, to].
 struct UniformDiameter {
-  double from = 0.8, to = 1.2;
+  double smallest = 0.8, largest = 1.2;
   bool operator==(const UniformDiameter&) const = default;
 
-  static constexpr About about{"uniform", "Uniform between two diameters"};
+  static constexpr Description description{"uniform", "Uniform between two diameters"};
   static constexpr auto fields() {
-    return std::tuple{field("from", &UniformDiameter::from, diameter_form),
-                      field("to", &UniformDiameter::to, diameter_form)};
+    return std::tuple{field("from", &UniformDiameter::smallest, diameter_form),
+                      field("to", &UniformDiameter::largest, diameter_form)};
   }
 };
 
@@ -81,7 +81,8 @@ struct ListedDiameters {
   std::vector<double> values;
   bool operator==(const ListedDiameters&) const = default;
 
-  static constexpr About about{"list", "The diameter of every sphere of the kind, in their order"};
+  static constexpr Description description{
+      "list", "The diameter of every sphere of the kind, in their order"};
   static constexpr auto fields() {
     return std::tuple{
         field("", &ListedDiameters::values, list_of(diameter_form, 1, most_spheres, "diameters"))};

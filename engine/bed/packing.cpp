@@ -42,10 +42,10 @@ void see_boundaries(const Boundary& boundary, const Packing& packing, Deepest& d
 
 }  // namespace
 
-void require_equal_spheres(const Packing& packing, const char* what) {
+void require_equal_spheres(const Packing& packing, const char* feature) {
   if (!packing.sizes) return;
   throw std::invalid_argument(
-      std::string(what) + " require equal spheres of diameter 1, and this packing is a mixture");
+      std::string(feature) + " require equal spheres of diameter 1, and this packing is a mixture");
 }
 
 double mean_height(const Packing& packing) {

@@ -21,9 +21,9 @@ struct Packing {
   double largest_radius() const { return sizes ? sizes->largest_radius() : sphere_radius; }
 };
 
-/// Throws std::invalid_argument where the packing has sizes, which `what` (a plural, "taps") does
-/// not take: the only place that rejects mixtures.
-void require_equal_spheres(const Packing& packing, const char* what);
+/// Throws std::invalid_argument where the packing has sizes, which `feature` (a plural, "taps")
+/// does not take: the only place that rejects mixtures.
+void require_equal_spheres(const Packing& packing, const char* feature);
 
 /// <Z>, the mean height of the centres, diameters, each weighted by the volume of its sphere; of
 /// equal spheres the mean potential energy per sphere in units of m g d. Summed in order of the

@@ -41,7 +41,7 @@ double RandomStream::uniform() {
   return std::min((static_cast<double>(next64() >> 11) + 0.5) * 0x1p-53, largest);
 }
 
-std::uint64_t RandomStream::below(std::uint64_t n) {
+std::uint64_t RandomStream::integer_below(std::uint64_t n) {
   // Lemire's multiplication with rejection: exactly uniform.
   __extension__ using Wide = unsigned __int128;
   const std::uint64_t least = (0 - n) % n;

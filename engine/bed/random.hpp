@@ -34,7 +34,7 @@ class RandomStream {
   /// Uniform in (0, 1), 53 bits: never 0, never 1.
   double uniform();
   /// Uniform in {0, ..., n - 1}, n > 0.
-  std::uint64_t below(std::uint64_t n);
+  std::uint64_t integer_below(std::uint64_t n);
   /// Numbers drawn so far.
   std::uint64_t position() const { return position_; }
 

@@ -17,7 +17,7 @@ std::string in_short(double value) {
   return text;
 }
 
-bool within(double value, double low, double high) {
+bool in_range(double value, double low, double high) {
   return value >= low && value <= high;  // false for NaN
 }
 
@@ -35,7 +35,7 @@ std::optional<std::string> kinds_fault(std::span<const SphereKind> kinds) {
              std::to_string(longest_kind_name) + " letters, digits and the characters _ - + .";
     if (!names.insert(kind.name).second)
       return "two kinds of spheres are named \"" + kind.name + "\": give each a name of its own";
-    if (!within(kind.density, least_density, greatest_density))
+    if (!in_range(kind.density, least_density, greatest_density))
       return "spheres of kind \"" + kind.name + "\" have the density " + in_short(kind.density) +
              ": it must lie between " + in_short(least_density) + " and " +
              in_short(greatest_density);
@@ -53,7 +53,7 @@ std::optional<std::string> sizes_fault(std::span<const double> diameters,
            std::to_string(kinds.size()) + " spheres are given: give both for every sphere";
   if (auto fault = kinds_fault(of_kinds)) return fault;
   for (std::size_t i = 0; i < diameters.size(); ++i) {
-    if (!within(diameters[i], least_diameter, greatest_diameter))
+    if (!in_range(diameters[i], least_diameter, greatest_diameter))
       return "sphere " + std::to_string(i) + " has the diameter " + in_short(diameters[i]) +
              ": it must lie between " + in_short(least_diameter) + " and " +
              in_short(greatest_diameter);

@@ -21,8 +21,8 @@ double cap_volume(double h) {
 // Integral of cap_volume(h) over h from low to high: a cubic where the sphere is cut, of which
 // Gauss's rule of two points is exact, and the whole sphere above.
 double cap_integral(double low, double high) {
-  const double from = std::clamp(low, 0.0, 1.0), to = std::clamp(high, 0.0, 1.0);
-  const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+  const double begin = std::clamp(low, 0.0, 1.0), end = std::clamp(high, 0.0, 1.0);
+  const double middle = 0.5 * (begin + end), half = 0.5 * (end - begin);
   const double offset = half / std::sqrt(3.0);
   return half * (cap_volume(middle - offset) + cap_volume(middle + offset)) +
          sphere_volume * (std::max(high, 1.0) - std::max(low, 1.0));
@@ -34,13 +34,13 @@ double whole_volume(double diameter) {
 
 double quantile(std::vector<double>& heights, double q) {
   const double position = q * static_cast<double>(heights.size() - 1);
-  const auto below = static_cast<std::ptrdiff_t>(position);
-  const auto nth = heights.begin() + below;
+  const auto rank = static_cast<std::ptrdiff_t>(position);
+  const auto nth = heights.begin() + rank;
   std::nth_element(heights.begin(), nth, heights.end());
   const double low = *nth;
   if (nth + 1 == heights.end()) return low;
   const double high = *std::min_element(nth + 1, heights.end());
-  return low + (position - static_cast<double>(below)) * (high - low);
+  return low + (position - static_cast<double>(rank)) * (high - low);
 }
 
 struct Weighted {
@@ -57,18 +57,18 @@ HeightWindow weighted_quantiles(const Packing& packing, QuantileWindow quantiles
   double span = 0;
   for (std::size_t k = 1; k < spheres.size(); ++k)
     span += 0.5 * (spheres[k - 1].weight + spheres[k].weight);
-  const auto at = [&](double q) {
-    double before = 0;
+  const auto height_at = [&](double q) {
+    double cumulated = 0;
     for (std::size_t k = 1; k < spheres.size(); ++k) {
       const Weighted &low = spheres[k - 1], &high = spheres[k];
-      const double step = 0.5 * (low.weight + high.weight), beyond = q * span - before;
+      const double step = 0.5 * (low.weight + high.weight), beyond = q * span - cumulated;
       if (beyond <= step)
         return low.height + std::max(0.0, beyond / step) * (high.height - low.height);
-      before += step;
+      cumulated += step;
     }
     return spheres.back().height;
   };
-  return {at(quantiles.low), at(quantiles.high)};
+  return {height_at(quantiles.low), height_at(quantiles.high)};
 }
 
 // Area of the cut through a sphere centred at height z.

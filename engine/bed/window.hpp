@@ -13,7 +13,8 @@ struct HeightWindow {
   double low = 0, high = 2;
   bool operator==(const HeightWindow&) const = default;
 
-  static constexpr About about{"heights", "From low to high, diameters above the floor"};
+  static constexpr Description description{"heights",
+                                           "From low to high, diameters above the floor"};
   static constexpr Bounds form = height_bounds;
 };
 
@@ -27,10 +28,10 @@ struct QuantileWindow {
   double low = 0.2, high = 0.8;
   bool operator==(const QuantileWindow&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "quantiles",
       "From low to high, quantiles of the heights of the centres of the starting packing"};
-  static constexpr Bounds form = bounds(between(0, 1));
+  static constexpr Bounds form = bounds(closed_range(0, 1));
 };
 
 using Window = std::variant<HeightWindow, QuantileWindow>;

@@ -93,9 +93,9 @@ void ContactLists::find_far_pairs(std::span<const SphereRow> rows) {
     for (const std::uint32_t i : of_class.places) of_class.cells.insert(inside[i]);
   far_.clear();
   const auto add = [&](std::uint32_t i, std::uint32_t j, Vec3 image) {
-    const auto turn = [&](int axis, double length, double at, double own) {
+    const auto turn = [&](int axis, double length, double coordinate, double own) {
       if (length == 0) return 0;
-      const auto images = static_cast<std::int32_t>(std::lround((at - own) / length));
+      const auto images = static_cast<std::int32_t>(std::lround((coordinate - own) / length));
       return home[i][axis] - home[j][axis] + images;
     };
     const std::array<std::int32_t, 2> turns = {turn(0, periods.x, image.x, inside[j].x),
@@ -108,14 +108,14 @@ void ContactLists::find_far_pairs(std::span<const SphereRow> rows) {
   };
   const double skin = far_skin * skin_unit_;
   for (auto own = classes.begin(); own != classes.end(); ++own) {
-    for (auto with = own; with != classes.end(); ++with) {
+    for (auto partner = own; partner != classes.end(); ++partner) {
       for (const std::uint32_t i : own->places) {
-        const double reach = radius_at(i) + with->largest_radius + skin;
-        with->cells.any_near(inside[i], reach, [&](std::uint32_t k, Vec3 image) {
-          const std::uint32_t j = with->places[k];
-          if (with == own && j <= i) return false;
-          const double within = radius_at(i) + radius_at(j) + skin;
-          if (norm_squared(inside[i] - image) < within * within) add(i, j, image);
+        const double reach = radius_at(i) + partner->largest_radius + skin;
+        partner->cells.any_near(inside[i], reach, [&](std::uint32_t k, Vec3 image) {
+          const std::uint32_t j = partner->places[k];
+          if (partner == own && j <= i) return false;
+          const double cutoff = radius_at(i) + radius_at(j) + skin;
+          if (norm_squared(inside[i] - image) < cutoff * cutoff) add(i, j, image);
           return false;
         });
       }
@@ -137,13 +137,13 @@ void ContactLists::make_far_slots() {
     far_slots_[next[far_[p].first]++] = {p, 0};
     far_slots_[next[far_[p].second]++] = {p, 1};
   }
-  const auto other = [&](const FarSlot& slot) {
+  const auto key = [&](const FarSlot& slot) {
     const FarPair& pair = far_[slot.pair];
     return std::tuple(numbers_[slot.second ? pair.first : pair.second], pair.turns);
   };
   for (std::uint32_t i = 0; i < n_spheres_; ++i) {
     std::sort(far_slots_.begin() + far_begin_[i], far_slots_.begin() + far_begin_[i + 1],
-              [&](const FarSlot& a, const FarSlot& b) { return other(a) < other(b); });
+              [&](const FarSlot& a, const FarSlot& b) { return key(a) < key(b); });
   }
 }
 
@@ -181,7 +181,7 @@ void ContactLists::find_pairs(std::span<const SphereRow> rows) {
     near_.shift[1].push_back(pair.turns[1] * periods.y);
   };
   // Those that touch now come first: blocks of the others are idle.
-  std::vector<std::uint32_t> apart;
+  std::vector<std::uint32_t> separated;
   for (std::uint32_t p = 0; p < far_.size(); ++p) {
     const FarPair& pair = far_[p];
     const SphereRow &a = rows[pair.first], &b = rows[pair.second];
@@ -192,11 +192,11 @@ void ContactLists::find_pairs(std::span<const SphereRow> rows) {
     if (distance2 < touches * touches) {
       add(p, pair);
     } else if (distance2 < reach * reach) {
-      apart.push_back(p);
+      separated.push_back(p);
     }
   }
   first_idle_ = near_.first.size();
-  for (const std::uint32_t p : apart) add(p, far_[p]);
+  for (const std::uint32_t p : separated) add(p, far_[p]);
   fill(near_, near_.first.size());
   if (sizes_) measure_sizes(near_);
   carry_pairs(old, old_near_of);
@@ -204,45 +204,45 @@ void ContactLists::find_pairs(std::span<const SphereRow> rows) {
 }
 
 void ContactLists::measure_sizes(Near& pairs) const {
-  for (std::size_t at = 0; at < pairs.n; ++at) {
-    const std::uint32_t first = pairs.first[at], second = pairs.second[at];
+  for (std::size_t index = 0; index < pairs.n; ++index) {
+    const std::uint32_t first = pairs.first[index], second = pairs.second[index];
     const double a = radii_[first], b = radii_[second];
     const double m = sizes_->mass(numbers_[first]), n = sizes_->mass(numbers_[second]);
-    pairs.size[touching_distance][at] = a + b;
-    pairs.size[per_diameter][at] = 1 / (a + b);
-    pairs.size[mass_root][at] = std::sqrt(2 * m * n / (m + n));
-    pairs.size[per_smaller_diameter][at] = 0.5 / std::min(a, b);
+    pairs.size[touching_distance][index] = a + b;
+    pairs.size[per_diameter][index] = 1 / (a + b);
+    pairs.size[mass_root][index] = std::sqrt(2 * m * n / (m + n));
+    pairs.size[per_smaller_diameter][index] = 0.5 / std::min(a, b);
   }
 }
 
 // From the near pairs before, or from those that wait; those that remember are not idle.
 void ContactLists::carry_pairs(const Near& old, std::span<const std::uint32_t> old_near_of) {
-  const auto set = [&](std::size_t at, const ContactHistory& history) {
+  const auto set = [&](std::size_t index, const ContactHistory& history) {
     if (history == ContactHistory{}) return;
-    for (int k = 0; k < n_history_; ++k) near_.history[k][at] = history[k];
-    first_idle_ = std::max(first_idle_, at + 1);
+    for (int k = 0; k < n_history_; ++k) near_.history[k][index] = history[k];
+    first_idle_ = std::max(first_idle_, index + 1);
   };
   if (!old_near_of.empty()) {
-    for (std::size_t at = 0; at < near_.n; ++at) {
-      const std::uint32_t before = old_near_of[near_.source[at]];
-      if (before != none) set(at, history_of(old, before));
+    for (std::size_t index = 0; index < near_.n; ++index) {
+      const std::uint32_t old_index = old_near_of[near_.source[index]];
+      if (old_index != none) set(index, history_of(old, old_index));
     }
     return;
   }
   std::ranges::sort(waiting_pairs_, {}, [](const KeptPair& pair) { return order(pair); });
-  for (std::size_t at = 0; at < near_.n && !waiting_pairs_.empty(); ++at) {
-    const FarPair& pair = far_[near_.source[at]];
+  for (std::size_t index = 0; index < near_.n && !waiting_pairs_.empty(); ++index) {
+    const FarPair& pair = far_[near_.source[index]];
     const auto key = std::tuple(numbers_[pair.first], numbers_[pair.second], pair.turns);
-    const auto found = std::ranges::lower_bound(waiting_pairs_, key, {},
-                                                [](const KeptPair& one) { return order(one); });
-    if (found != waiting_pairs_.end() && order(*found) == key) set(at, found->history);
+    const auto found = std::ranges::lower_bound(
+        waiting_pairs_, key, {}, [](const KeptPair& kept_pair) { return order(kept_pair); });
+    if (found != waiting_pairs_.end() && order(*found) == key) set(index, found->history);
   }
   waiting_pairs_.clear();
 }
 
-ContactHistory ContactLists::history_of(const Near& near, std::size_t at) const {
+ContactHistory ContactLists::history_of(const Near& near, std::size_t index) const {
   ContactHistory history{};
-  for (int k = 0; k < n_history_; ++k) history[k] = near.history[k][at];
+  for (int k = 0; k < n_history_; ++k) history[k] = near.history[k][index];
   return history;
 }
 
@@ -256,18 +256,19 @@ void ContactLists::keep(std::vector<KeptPair> pairs, std::vector<KeptSide> sides
 }
 
 std::vector<KeptPair> ContactLists::near_pairs() const {
-  std::vector<KeptPair> out = waiting_pairs_;
-  for (std::size_t at = 0; at < near_.n; ++at) {
-    const FarPair& pair = far_[near_.source[at]];
-    out.push_back({numbers_[pair.first], numbers_[pair.second], pair.turns, history_of(near_, at)});
+  std::vector<KeptPair> kept = waiting_pairs_;
+  for (std::size_t index = 0; index < near_.n; ++index) {
+    const FarPair& pair = far_[near_.source[index]];
+    kept.push_back(
+        {numbers_[pair.first], numbers_[pair.second], pair.turns, history_of(near_, index)});
   }
-  std::ranges::sort(out, {}, [](const KeptPair& one) { return order(one); });
-  return out;
+  std::ranges::sort(kept, {}, [](const KeptPair& pair) { return order(pair); });
+  return kept;
 }
 
 std::vector<KeptPair> ContactLists::kept_pairs() const {
   std::vector<KeptPair> kept = near_pairs();
-  std::erase_if(kept, [](const KeptPair& one) { return one.history == ContactHistory{}; });
+  std::erase_if(kept, [](const KeptPair& pair) { return pair.history == ContactHistory{}; });
   return kept;
 }
 
@@ -279,7 +280,7 @@ void ContactLists::make_slots() {
   const std::uint32_t floor_at = padded(near_), sides_at = floor_at + padded(floor_);
   action_.assign(sides_at + padded(sides_), {});
   idle_.assign(action_.size(), 0);
-  for (std::size_t at = first_idle_; at < floor_at; ++at) idle_[at] = 1;
+  for (std::size_t index = first_idle_; index < floor_at; ++index) idle_[index] = 1;
   // [sphere][0]: floor; the others: up to two planes are near at once, four in a narrow box.
   std::vector<std::array<std::uint32_t, 5>> of_sides(n_spheres_, {none, none, none, none, none});
   for (std::uint32_t k = 0; k < floor_.n; ++k) of_sides[floor_.first[k]][0] = floor_at + k;
@@ -300,18 +301,18 @@ void ContactLists::make_slots() {
 }
 
 ContactArrays ContactLists::arrays(Near& near, std::size_t action_at) {
-  ContactArrays out;
-  out.n = near.first.size();
-  out.first = near.first.data();
-  out.second = near.second.data();
-  for (int k = 0; k < 2; ++k) out.shift[k] = near.shift[k].data();
-  for (int k = 0; k < 4; ++k) out.side[k] = near.side[k].data();
-  for (std::size_t k = 0; k < n_contact_sizes; ++k) out.size[k] = near.size[k].data();
-  for (int k = 0; k < n_history_; ++k) out.history[k] = near.history[k].data();
-  out.action = action_.data() + action_at;
-  out.idle = idle_.data() + action_at;
-  out.deepest = &deepest_;
-  return out;
+  ContactArrays arrays;
+  arrays.n = near.first.size();
+  arrays.first = near.first.data();
+  arrays.second = near.second.data();
+  for (int k = 0; k < 2; ++k) arrays.shift[k] = near.shift[k].data();
+  for (int k = 0; k < 4; ++k) arrays.side[k] = near.side[k].data();
+  for (std::size_t k = 0; k < n_contact_sizes; ++k) arrays.size[k] = near.size[k].data();
+  for (int k = 0; k < n_history_; ++k) arrays.history[k] = near.history[k].data();
+  arrays.action = action_.data() + action_at;
+  arrays.idle = idle_.data() + action_at;
+  arrays.deepest = &deepest_;
+  return arrays;
 }
 
 ContactArrays ContactLists::pairs() {
@@ -327,9 +328,9 @@ ContactArrays ContactLists::sides() {
 const std::uint8_t* ContactLists::acted_upon() {
   if (!mostly_idle()) return nullptr;
   acted_upon_.assign(n_spheres_ + 2, 0);
-  for (std::size_t at = 0; at < near_.first.size(); at += smallest_block) {
-    if (idle_[at] != 0) continue;
-    for (std::size_t k = at; k < at + smallest_block; ++k) {
+  for (std::size_t index = 0; index < near_.first.size(); index += smallest_block) {
+    if (idle_[index] != 0) continue;
+    for (std::size_t k = index; k < index + smallest_block; ++k) {
       acted_upon_[near_.first[k]] = 1;
       acted_upon_[near_.second[k]] = 1;
     }
@@ -342,7 +343,7 @@ const std::uint8_t* ContactLists::acted_upon() {
 // With fewer than seven eighths, saying who is acted upon costs more than the sums it saves.
 bool ContactLists::mostly_idle() const {
   std::size_t idle = 0;
-  for (std::size_t at = 0; at < near_.first.size(); at += block_size) idle += idle_[at];
+  for (std::size_t index = 0; index < near_.first.size(); index += block_size) idle += idle_[index];
   return 8 * idle * block_size > 7 * near_.first.size();
 }
 

@@ -121,12 +121,12 @@ class ContactLists {
   void make_far_slots();
   void find_pairs(std::span<const SphereRow> rows);
   void carry_pairs(const Near& old, std::span<const std::uint32_t> old_near_of);
-  ContactHistory history_of(const Near& near, std::size_t at) const;
+  ContactHistory history_of(const Near& near, std::size_t index) const;
   void find_sides(std::span<const SphereRow> rows, double floor_height);
   void carry_sides(Near& sides, const std::vector<KeptSide>& kept) const;
   void make_slots();
   bool mostly_idle() const;
-  void add_sides(const Near& near, std::vector<KeptSide>& out) const;
+  void add_sides(const Near& near, std::vector<KeptSide>& kept) const;
   ContactArrays arrays(Near& near, std::size_t action_at);
   void fill(Near& near, std::size_t n) const;
   double radius_at(std::uint32_t place) const {

@@ -43,40 +43,40 @@ void ContactLists::find_sides(std::span<const SphereRow> rows, double floor_heig
 }
 
 void ContactLists::measure_side_sizes(Near& sides) const {
-  for (std::size_t at = 0; at < sides.n; ++at) {
-    const double radius = radii_[sides.first[at]];
-    sides.size[touching_distance][at] = radius;
-    sides.size[per_diameter][at] = sides.size[per_smaller_diameter][at] = 0.5 / radius;
-    sides.size[mass_root][at] = std::sqrt(sizes_->mass(numbers_[sides.first[at]]));
+  for (std::size_t index = 0; index < sides.n; ++index) {
+    const double radius = radii_[sides.first[index]];
+    sides.size[touching_distance][index] = radius;
+    sides.size[per_diameter][index] = sides.size[per_smaller_diameter][index] = 0.5 / radius;
+    sides.size[mass_root][index] = std::sqrt(sizes_->mass(numbers_[sides.first[index]]));
   }
 }
 
 void ContactLists::carry_sides(Near& sides, const std::vector<KeptSide>& kept) const {
-  for (std::size_t at = 0; at < sides.n && !kept.empty(); ++at) {
-    const auto key = std::tuple(numbers_[sides.first[at]], sides.source[at]);
+  for (std::size_t index = 0; index < sides.n && !kept.empty(); ++index) {
+    const auto key = std::tuple(numbers_[sides.first[index]], sides.source[index]);
     const auto found =
-        std::ranges::lower_bound(kept, key, {}, [](const KeptSide& one) { return order(one); });
+        std::ranges::lower_bound(kept, key, {}, [](const KeptSide& side) { return order(side); });
     if (found == kept.end() || order(*found) != key) continue;
-    for (int k = 0; k < n_history_; ++k) sides.history[k][at] = found->history[k];
+    for (int k = 0; k < n_history_; ++k) sides.history[k][index] = found->history[k];
   }
 }
 
-void ContactLists::add_sides(const Near& near, std::vector<KeptSide>& out) const {
-  for (std::size_t at = 0; at < near.n; ++at)
-    out.push_back({numbers_[near.first[at]], near.source[at], history_of(near, at)});
+void ContactLists::add_sides(const Near& near, std::vector<KeptSide>& kept) const {
+  for (std::size_t index = 0; index < near.n; ++index)
+    kept.push_back({numbers_[near.first[index]], near.source[index], history_of(near, index)});
 }
 
 std::vector<KeptSide> ContactLists::near_sides() const {
-  std::vector<KeptSide> out = waiting_sides_;
-  add_sides(floor_, out);
-  add_sides(sides_, out);
-  std::ranges::sort(out, {}, [](const KeptSide& one) { return order(one); });
-  return out;
+  std::vector<KeptSide> kept = waiting_sides_;
+  add_sides(floor_, kept);
+  add_sides(sides_, kept);
+  std::ranges::sort(kept, {}, [](const KeptSide& side) { return order(side); });
+  return kept;
 }
 
 std::vector<KeptSide> ContactLists::kept_sides() const {
   std::vector<KeptSide> kept = near_sides();
-  std::erase_if(kept, [](const KeptSide& one) { return one.history == ContactHistory{}; });
+  std::erase_if(kept, [](const KeptSide& side) { return side.history == ContactHistory{}; });
   return kept;
 }
 
@@ -89,31 +89,32 @@ void ContactLists::measure_sides(std::span<const SphereRow> rows, double floor_h
           y(near.side[1].data()),
           z(near.side[2].data()),
           distance(near.side[3].data()) {}
-    void set(std::size_t at, Vec3 normal, double from_side) const {
-      x[at] = normal.x;
-      y[at] = normal.y;
-      z[at] = normal.z;
-      distance[at] = from_side;
+    void set(std::size_t index, Vec3 normal, double from_side) const {
+      x[index] = normal.x;
+      y[index] = normal.y;
+      z[index] = normal.z;
+      distance[index] = from_side;
     }
   };
   const Columns floor(floor_), sides(sides_);
-  for (std::size_t at = 0; at < floor_.n; ++at)
-    floor.set(at, {0, 0, 1}, rows[floor_.first[at]].z - floor_height);
-  for (std::size_t at = 0; at < sides_.n; ++at) {
-    const Face& face = faces_[sides_.source[at]];
-    const Vec3 r = centre_of(rows[sides_.first[at]]);
+  for (std::size_t index = 0; index < floor_.n; ++index)
+    floor.set(index, {0, 0, 1}, rows[floor_.first[index]].z - floor_height);
+  for (std::size_t index = 0; index < sides_.n; ++index) {
+    const Face& face = faces_[sides_.source[index]];
+    const Vec3 r = centre_of(rows[sides_.first[index]]);
     if (face.is_tube) {
       const auto [distance, normal] = face.nearest(r);
-      sides.set(at, normal, distance);
+      sides.set(index, normal, distance);
     } else {  // a plane's normal goes from the face to its place
-      sides.set(at, face.inward, face.distance(r));
+      sides.set(index, face.inward, face.distance(r));
     }
   }
 }
 
 double ContactLists::floor_force() const {
   double sum = 0;
-  for (std::size_t at = 0; at < floor_.n; ++at) sum += action_[near_.first.size() + at].force_z;
+  for (std::size_t index = 0; index < floor_.n; ++index)
+    sum += action_[near_.first.size() + index].force_z;
   return sum;
 }
 

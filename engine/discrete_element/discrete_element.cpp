@@ -8,8 +8,8 @@ std::optional<std::string> engine_fault(const DiscreteElement& settings,
                                         const Container& container) {
   if (!has_gravity(container))
     return "discrete elements fall on a floor: without gravity (fully_periodic) there is none";
-  const auto differs = [&](const std::optional<ContactLaw>& other) {
-    return other && other->index() != settings.spheres.index();
+  const auto differs = [&](const std::optional<ContactLaw>& law) {
+    return law && law->index() != settings.spheres.index();
   };
   if (differs(settings.floor) || differs(settings.sides))
     return "the contacts with floor and sides have the law of those between spheres, walton_braun "

@@ -17,19 +17,19 @@
 // (Rosato et al. 2010, sec. III). Settings are in SI units.
 namespace jostle::inline engine {
 
-inline constexpr Range stiffness_range = between(1, 1e12);          // N/m
-inline constexpr Range tangential_ratio_range = between(1e-3, 10);  // ratio to the stiffness
-inline constexpr Range rest_seconds_range = above(0, 1e5);          // s
-inline constexpr Range contact_steps_range = between(40, 1e6);      // time steps of a contact
+inline constexpr Range stiffness_range = closed_range(1, 1e12);          // N/m
+inline constexpr Range tangential_ratio_range = closed_range(1e-3, 10);  // ratio to the stiffness
+inline constexpr Range rest_seconds_range = left_open_range(0, 1e5);     // s
+inline constexpr Range contact_steps_range = closed_range(40, 1e6);      // time steps of a contact
 
 /// The fields that all contact laws share.
 template <class Law>
 constexpr auto contact_fields(std::string_view ratio) {
   return std::tuple{
       field("stiffness", &Law::stiffness, Number{stiffness_range, "N/m"}),
-      field("restitution", &Law::restitution, Number{between(0.05, 1)},
+      field("restitution", &Law::restitution, Number{closed_range(0.05, 1)},
             "Speed after / before a head-on collision"),
-      field("friction", &Law::friction, Number{between(0, 100)},
+      field("friction", &Law::friction, Number{closed_range(0, 100)},
             "mu. 0: no tangential forces and no spin"),
       field("tangential_ratio", &Law::tangential_ratio, Number{tangential_ratio_range}, ratio)};
 }
@@ -44,7 +44,7 @@ struct WaltonBraun {
   double tangential_ratio = 0.8;  // K0 / K1
   bool operator==(const WaltonBraun&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "walton_braun",
       "Partially latched springs (Walton & Braun 1986) with friction after Mindlin & Deresiewicz"};
   static constexpr auto fields() { return contact_fields<WaltonBraun>("K0 / K1"); }
@@ -59,13 +59,13 @@ struct LinearSpringDashpot {
   double tangential_damping = 0.5;    // ratio of the dashpots' coefficients
   bool operator==(const LinearSpringDashpot&) const = default;
 
-  static constexpr About about{"linear_spring_dashpot",
-                               "Springs and dashpots (Cundall & Strack 1979)"};
+  static constexpr Description description{"linear_spring_dashpot",
+                                           "Springs and dashpots (Cundall & Strack 1979)"};
   static constexpr auto fields() {
     return std::tuple_cat(
         contact_fields<LinearSpringDashpot>("Ratio of the stiffnesses; 2/7 where absent"),
         std::tuple{field("tangential_damping", &LinearSpringDashpot::tangential_damping,
-                         Number{between(0, 10)}, "Ratio of the dashpots' coefficients")});
+                         Number{closed_range(0, 10)}, "Ratio of the dashpots' coefficients")});
   }
 };
 
@@ -78,12 +78,13 @@ struct QuietRest {
   double seconds = 0.02;
   bool operator==(const QuietRest&) const = default;
 
-  static constexpr About about{"quiet"};
+  static constexpr Description description{"quiet"};
   static constexpr auto fields() {
-    return std::tuple{field("kinetic_energy", &QuietRest::kinetic_energy,
-                            Number{above(0, 1), "m g d"}, "Kinetic energy per sphere at rest"),
-                      field("seconds", &QuietRest::seconds, Number{rest_seconds_range, "s"},
-                            "How long it stays below")};
+    return std::tuple{
+        field("kinetic_energy", &QuietRest::kinetic_energy, Number{left_open_range(0, 1), "m g d"},
+              "Kinetic energy per sphere at rest"),
+        field("seconds", &QuietRest::seconds, Number{rest_seconds_range, "s"},
+              "How long it stays below")};
   }
 };
 
@@ -92,7 +93,7 @@ struct TimedRest {
   double seconds = 0.75;
   bool operator==(const TimedRest&) const = default;
 
-  static constexpr About about{"timed"};
+  static constexpr Description description{"timed"};
   static constexpr auto fields() {
     return std::tuple{field("seconds", &TimedRest::seconds, Number{rest_seconds_range, "s"},
                             "Time after the floor came to rest")};
@@ -120,9 +121,9 @@ struct DiscreteElement {
   static constexpr auto fields() {
     constexpr OneOf<ContactLaw> law{.by_name = true, .definition = "contact_law"};
     return std::tuple{
-        field("diameter", &DiscreteElement::diameter, Number{between(1e-6, 10), "m"}),
-        field("density", &DiscreteElement::density, Number{between(1, 1e5), "kg/m^3"}),
-        field("gravity", &DiscreteElement::gravity, Number{between(1e-4, 1e4), "m/s^2"}),
+        field("diameter", &DiscreteElement::diameter, Number{closed_range(1e-6, 10), "m"}),
+        field("density", &DiscreteElement::density, Number{closed_range(1, 1e5), "kg/m^3"}),
+        field("gravity", &DiscreteElement::gravity, Number{closed_range(1e-4, 1e4), "m/s^2"}),
         field("contact", &DiscreteElement::spheres, law, "Contact law of two spheres"),
         field("floor", &DiscreteElement::floor, law,
               "Contact law of a sphere and the floor; absent: that of two spheres"),

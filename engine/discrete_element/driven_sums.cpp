@@ -33,18 +33,18 @@ void add_sample(DrivenSums& sums, std::span<const GrainState> grains, double flo
   }
   if (samples.size() > sums.bins.size()) sums.bins.resize(samples.size());
   for (std::size_t bin = 0; bin < samples.size(); ++bin) {
-    Sample& one = samples[bin];
-    if (!(one.n > 0)) continue;
-    one.mean = (1 / one.n) * one.mean;
-    sums.bins[bin].spheres += one.n;
-    sums.bins[bin].freedom += one.n - 1;
+    Sample& sample = samples[bin];
+    if (!(sample.n > 0)) continue;
+    sample.mean = (1 / sample.n) * sample.mean;
+    sums.bins[bin].spheres += sample.n;
+    sums.bins[bin].freedom += sample.n - 1;
   }
   for (const GrainState& grain : grains) {
     if (!is_counted(grain)) continue;
     const std::size_t bin = bin_of(grain);
-    const Vec3 about = grain.velocity - samples[bin].mean;
-    sums.bins[bin].lateral += 0.5 * (about.x * about.x + about.y * about.y);
-    sums.bins[bin].vertical += about.z * about.z;
+    const Vec3 fluctuation = grain.velocity - samples[bin].mean;
+    sums.bins[bin].lateral += 0.5 * (fluctuation.x * fluctuation.x + fluctuation.y * fluctuation.y);
+    sums.bins[bin].vertical += fluctuation.z * fluctuation.z;
   }
   ++sums.samples;
 }

@@ -59,7 +59,7 @@ class GrainDynamics final : public Dynamics {
     loop_->displace(bed);
     begin({});
     state_.dropped_offsets = report.lateral_offsets_dropped;
-    state_.input = state_.before.held() - held;
+    state_.input = state_.start_energies.held() - held;
   }
 
   void watch_motion(double bin_width) override {
@@ -143,7 +143,7 @@ class GrainDynamics final : public Dynamics {
     loop_->forget_greatest_overlap();
     state_ = {};
     state_.status = DynamicsStatus::running;
-    state_.before = loop_->energies();
+    state_.start_energies = loop_->energies();
   }
 
   // Repeats the check of the scene, which does not know the sizes of a packing from a file.
@@ -164,7 +164,7 @@ class GrainDynamics final : public Dynamics {
     const double widest = 2 * packing_.largest_radius();
     const double softer = widest * solid_volume(packing_) / (sphere_volume * mass);
     const double by_weight = softer * column * column / (6 * units_.spheres.stiffness);
-    const double held = state_.before.elastic / mass;
+    const double held = state_.start_energies.elastic / mass;
     if (held <= most + times * by_weight) return;
     throw std::runtime_error(
         "the overlaps of the start hold " + std::to_string(held) +
@@ -188,7 +188,7 @@ class GrainDynamics final : public Dynamics {
   std::uint64_t steps_to_next_sample() const {
     return is_watched() ? steps_to_next(sample_interval()) : check_interval();
   }
-  double motion_height() const { return loop_->motion().at(loop_->time()).height; }
+  double motion_height() const { return loop_->motion().place_at(loop_->time()).height; }
 
   void check() {
     if (!loop_->is_sound())
@@ -217,11 +217,12 @@ class GrainDynamics final : public Dynamics {
     double dissipated() const { return std::abs(latched) + std::abs(friction); }
   };
   Ledger ledger(const Energies& now) const {
-    Ledger tap{.floor_work = now.floor_work - state_.before.floor_work,
-               .latched = now.latched - state_.before.latched,
-               .friction = now.friction - state_.before.friction,
-               .came = now.floor_work - state_.before.floor_work + state_.before.held(),
-               .missing = 0};
+    Ledger tap{
+        .floor_work = now.floor_work - state_.start_energies.floor_work,
+        .latched = now.latched - state_.start_energies.latched,
+        .friction = now.friction - state_.start_energies.friction,
+        .came = now.floor_work - state_.start_energies.floor_work + state_.start_energies.held(),
+        .missing = 0};
     tap.missing = tap.came - now.held() - tap.latched - tap.friction;
     return tap;
   }

@@ -41,33 +41,35 @@ struct HeldByContact {
 // and is longer where they slide faster. It can give back what a spring of mu N holds: the rest,
 // which the contacts' sums do not have yet, is friction's. One that a displacement has opened holds
 // all until it is erased.
-void add_shear(HeldByContact& out, const LawConstants& constants, const Approach& at,
+void add_shear(HeldByContact& stored, const LawConstants& constants, const Approach& approach,
                double force) {
   double given_back = force;
-  if (at.overlap > 0) {
-    const double normal = constants.stiffness * at.overlap - constants.damping * at.speed;
+  if (approach.overlap > 0) {
+    const double normal =
+        constants.stiffness * approach.overlap - constants.damping * approach.speed;
     given_back = std::min(force, constants.friction * std::abs(normal));
   }
-  out.elastic += 0.5 / constants.tangential * squared(given_back);
-  out.friction += 0.5 / constants.tangential * (squared(force) - squared(given_back));
+  stored.elastic += 0.5 / constants.tangential * squared(given_back);
+  stored.friction += 0.5 / constants.tangential * (squared(force) - squared(given_back));
 }
 
 // Energy that a contact stores, has latched and has dissipated by friction beyond the counts of its
 // steps; a contact opened by a displacement counts until it is erased.
-HeldByContact held(GrainLaw law, const LawConstants& constants, const Approach& at,
+HeldByContact held(GrainLaw law, const LawConstants& constants, const Approach& approach,
                    const ContactHistory& history) {
-  HeldByContact out;
+  HeldByContact stored;
   if (is_linear(law)) {
-    out.elastic = 0.5 * constants.stiffness * squared(std::max(0.0, at.overlap));
+    stored.elastic = 0.5 * constants.stiffness * squared(std::max(0.0, approach.overlap));
   } else {
-    out.elastic = 0.5 * constants.unloading * squared(stretch(constants, at.overlap, history));
-    out.latched =
-        0.5 * constants.stiffness * constants.latched * squared(std::max(history[0], at.overlap));
+    stored.elastic =
+        0.5 * constants.unloading * squared(stretch(constants, approach.overlap, history));
+    stored.latched = 0.5 * constants.stiffness * constants.latched *
+                     squared(std::max(history[0], approach.overlap));
   }
   const double shear = shear_force(law, history);
-  if (law == GrainLaw::linear) add_shear(out, constants, at, shear);
-  if (law == GrainLaw::walton_braun) out.elastic += 0.5 / constants.tangential * squared(shear);
-  return out;
+  if (law == GrainLaw::linear) add_shear(stored, constants, approach, shear);
+  if (law == GrainLaw::walton_braun) stored.elastic += 0.5 / constants.tangential * squared(shear);
+  return stored;
 }
 
 }  // namespace
@@ -76,10 +78,10 @@ Approach GrainLoop::approach_of(const KeptPair& pair) const {
   const SphereRow &first = rows_[place_of_[pair.first]], &second = rows_[place_of_[pair.second]];
   const Vec3 periods = boundary_.periods();
   const Vec3 shift = {pair.turns[0] * periods.x, pair.turns[1] * periods.y, 0};
-  const Vec3 between = centre_of(first) - centre_of(second) - shift;
-  const double distance = std::sqrt(norm_squared(between));
+  const Vec3 branch = centre_of(first) - centre_of(second) - shift;
+  const double distance = std::sqrt(norm_squared(branch));
   return {radius_of(pair.first) + radius_of(pair.second) - distance,
-          dot(velocity_of(first) - velocity_of(second), between) / distance};
+          dot(velocity_of(first) - velocity_of(second), branch) / distance};
 }
 
 Approach GrainLoop::approach_of(const KeptSide& side) const {
@@ -108,14 +110,14 @@ LawConstants GrainLoop::constants_of(const KeptSide& side) const {
 // Energies that contacts hold and have dissipated, by their histories and the counts of steps.
 Energies GrainLoop::contact_energies() const {
   Energies sum;
-  for (const std::uint32_t at : place_of_) {
-    sum.friction += dissipated_[2 * at];
-    sum.latched += dissipated_[2 * at + 1];
+  for (const std::uint32_t index : place_of_) {
+    sum.friction += dissipated_[2 * index];
+    sum.latched += dissipated_[2 * index + 1];
   }
-  const auto add = [&](const HeldByContact& one) {
-    sum.elastic += one.elastic;
-    sum.latched += one.latched;
-    sum.friction += one.friction;
+  const auto add = [&](const HeldByContact& contact_energy) {
+    sum.elastic += contact_energy.elastic;
+    sum.latched += contact_energy.latched;
+    sum.friction += contact_energy.friction;
   };
   for (const KeptPair& pair : lists_.near_pairs())
     add(held(settings_.law, constants_of(pair), approach_of(pair), pair.history));
@@ -129,21 +131,21 @@ Energies GrainLoop::contact_energies() const {
 Energies GrainLoop::energies() const {
   GrainLoop next = *this;  // forces take up histories: this loop keeps its own
   if (!next.near_lists_hold()) next.renew_lists();
-  const Energies before = next.contact_energies();
+  const Energies energies_before = next.contact_energies();
   next.find_forces();
   Energies now = next.contact_energies();
   const SphereArrays all = next.spheres();
-  for (const std::uint32_t at : next.place_of_) {
-    for (std::uint32_t s = all.begin[at]; s < all.begin[at + 1]; ++s) {
+  for (const std::uint32_t index : next.place_of_) {
+    for (std::uint32_t s = all.begin[index]; s < all.begin[index + 1]; ++s) {
       const ActionRow& action = all.action[all.slot[s] >> 1];
       now.friction += action.dissipated_by_friction;
       now.latched += action.dissipated_normally;
     }
   }
   if (kernels_.sees_full_step) {
-    now.elastic = 0.5 * (before.elastic + now.elastic);
-    now.friction = 0.5 * (before.friction + now.friction);
-    now.latched = 0.5 * (before.latched + now.latched);
+    now.elastic = 0.5 * (energies_before.elastic + now.elastic);
+    now.friction = 0.5 * (energies_before.friction + now.friction);
+    now.latched = 0.5 * (energies_before.latched + now.latched);
   }
   BedMechanics moving;
   next.add_velocities(moving);

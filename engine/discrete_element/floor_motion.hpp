@@ -20,7 +20,7 @@ struct FloorMotion {
   struct Place {
     double height = 0, velocity = 0;
   };
-  Place at(double time) const {
+  Place place_at(double time) const {
     if (!(time < duration())) return {};
     using std::numbers::pi;
     const double turns = frequency * time;

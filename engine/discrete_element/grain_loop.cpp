@@ -29,8 +29,8 @@ GrainKernels kernels_of(GrainLaw law, GrainSizes sizes, InstructionSet set) {
       {InstructionSet::avx512, avx512::grain_kernels},
 #endif
   };
-  for (const Entry& one : entries) {
-    if (one.set == set) return one.kernels(law, sizes);
+  for (const Entry& entry : entries) {
+    if (entry.set == set) return entry.kernels(law, sizes);
   }
   throw_not_compiled_in(set);
 }
@@ -44,12 +44,13 @@ std::vector<std::uint32_t> sorted_numbers(const Boundary& boundary,
                                           const std::vector<GrainState>& grains) {
   const auto cell = [&](std::uint32_t i) {
     const Vec3 r = grains[i].centre;
-    const auto along = [](double x, double period) {
+    const auto cell_coordinate = [](double x, double period) {
       if (period > 0) x -= period * std::floor(x / period);
       return static_cast<std::int64_t>(std::floor(0.5 * x));
     };
     const Vec3 periods = boundary.periods();
-    return std::tuple(along(r.z, 0), along(r.y, periods.y), along(r.x, periods.x), i);
+    return std::tuple(cell_coordinate(r.z, 0), cell_coordinate(r.y, periods.y),
+                      cell_coordinate(r.x, periods.x), i);
   };
   std::vector<std::uint32_t> numbers(grains.size());
   std::iota(numbers.begin(), numbers.end(), 0u);
@@ -69,8 +70,8 @@ GrainLoop::GrainLoop(const Container& container, const ReducedSettings& settings
       lists_(container, kernels_.n_history, sizes_) {}
 
 void GrainLoop::load(const Packing& bed) {
-  const bool same = bed.sizes == sizes_ || (bed.sizes && sizes_ && *bed.sizes == *sizes_);
-  if (!same || (sizes_ && sizes_->size() != bed.centres.size()))
+  const bool has_same_sizes = bed.sizes == sizes_ || (bed.sizes && sizes_ && *bed.sizes == *sizes_);
+  if (!has_same_sizes || (sizes_ && sizes_->size() != bed.centres.size()))
     throw std::invalid_argument("a loop of grains takes beds of the sizes that it was made for");
   std::vector<GrainState> grains(bed.centres.size());
   for (std::size_t i = 0; i < grains.size(); ++i) grains[i].centre = bed.centres[i];
@@ -96,16 +97,16 @@ void GrainLoop::place(const std::vector<GrainState>& grains) {
     row = {centre.x, centre.y, centre.z, spin.x, velocity.x, velocity.y, velocity.z, spin.y};
     spin_z = spin.z;
   };
-  for (std::uint32_t at = 0; at < n; ++at) {
-    const GrainState& grain = grains[numbers_[at]];
-    place_of_[numbers_[at]] = at;
-    dissipated_[2 * at] = grain.friction;
-    dissipated_[2 * at + 1] = grain.latched;
+  for (std::uint32_t index = 0; index < n; ++index) {
+    const GrainState& grain = grains[numbers_[index]];
+    place_of_[numbers_[index]] = index;
+    dissipated_[2 * index] = grain.friction;
+    dissipated_[2 * index + 1] = grain.latched;
     if (kernels_.sees_full_step) {
-      put(rows_[at], spin_z_[at], grain.centre, grain.seen_velocity, grain.seen_spin);
-      put(half_rows_[at], half_spin_z_[at], {}, grain.velocity, grain.spin);
+      put(rows_[index], spin_z_[index], grain.centre, grain.seen_velocity, grain.seen_spin);
+      put(half_rows_[index], half_spin_z_[index], {}, grain.velocity, grain.spin);
     } else {
-      put(rows_[at], spin_z_[at], grain.centre, grain.velocity, grain.spin);
+      put(rows_[index], spin_z_[index], grain.centre, grain.velocity, grain.spin);
     }
   }
   rows_[n].z = -1e3;  // the padding of blocks touches nothing
@@ -125,18 +126,18 @@ void GrainLoop::place_sizes() {
 
 std::vector<GrainState> GrainLoop::grains() const {
   std::vector<GrainState> grains(numbers_.size());
-  for (std::uint32_t at = 0; at < numbers_.size(); ++at) {
-    GrainState& grain = grains[numbers_[at]];
-    const SphereRow& seen = rows_[at];
+  for (std::uint32_t index = 0; index < numbers_.size(); ++index) {
+    GrainState& grain = grains[numbers_[index]];
+    const SphereRow& seen = rows_[index];
     const bool has_half_rows = kernels_.sees_full_step;
-    const SphereRow& moving = has_half_rows ? half_rows_[at] : seen;
+    const SphereRow& moving = has_half_rows ? half_rows_[index] : seen;
     grain.centre = centre_of(seen);
     grain.velocity = velocity_of(moving);
-    grain.spin = spin_of(moving, has_half_rows ? half_spin_z_[at] : spin_z_[at]);
+    grain.spin = spin_of(moving, has_half_rows ? half_spin_z_[index] : spin_z_[index]);
     grain.seen_velocity = velocity_of(seen);
-    grain.seen_spin = spin_of(seen, spin_z_[at]);
-    grain.friction = dissipated_[2 * at];
-    grain.latched = dissipated_[2 * at + 1];
+    grain.seen_spin = spin_of(seen, spin_z_[index]);
+    grain.friction = dissipated_[2 * index];
+    grain.latched = dissipated_[2 * index + 1];
   }
   return grains;
 }
@@ -146,21 +147,21 @@ void GrainLoop::store(Packing& bed) const {
   bed.sizes = sizes_;
   bed.centres.resize(numbers_.size());
   const Vec3 periods = boundary_.periods();
-  const auto into = [](double x, double period) {
+  const auto wrapped_coordinate = [](double x, double period) {
     return period > 0 ? x - period * std::floor(x / period) : x;
   };
-  for (std::uint32_t at = 0; at < numbers_.size(); ++at) {
-    const Vec3 r = centre_of(rows_[at]);
-    bed.centres[numbers_[at]] =
-        wrapped(boundary_, {into(r.x, periods.x), into(r.y, periods.y), r.z});
+  for (std::uint32_t index = 0; index < numbers_.size(); ++index) {
+    const Vec3 r = centre_of(rows_[index]);
+    bed.centres[numbers_[index]] = wrapped(
+        boundary_, {wrapped_coordinate(r.x, periods.x), wrapped_coordinate(r.y, periods.y), r.z});
   }
 }
 
-void GrainLoop::displace(const Packing& to) {
-  Packing from;
-  store(from);
+void GrainLoop::displace(const Packing& displaced) {
+  Packing current;
+  store(current);
   for (std::uint32_t i = 0; i < numbers_.size(); ++i) {
-    const Vec3 displacement = separation(boundary_, to.centres[i], from.centres[i]);
+    const Vec3 displacement = separation(boundary_, displaced.centres[i], current.centres[i]);
     SphereRow& row = rows_[place_of_[i]];
     row.x += displacement.x;
     row.y += displacement.y;
@@ -195,9 +196,9 @@ void GrainLoop::run(std::uint64_t steps) {
 
 // All of a step but what moves; the floor's work between the ends of a step is by the mean force.
 void GrainLoop::find_forces() {
-  const FloorMotion::Place before = floor_;
-  floor_ = motion_.at(time_);
-  side_path_ += std::abs(floor_.height - before.height);
+  const FloorMotion::Place floor_before = floor_;
+  floor_ = motion_.place_at(time_);
+  side_path_ += std::abs(floor_.height - floor_before.height);
   if (!near_lists_hold()) renew_lists();
   const std::span<const SphereRow> rows(rows_.data(), numbers_.size());
   lists_.measure_sides(rows, floor_.height);
@@ -207,9 +208,9 @@ void GrainLoop::find_forces() {
   kernels_.pairs(lists_.pairs(), grains, settings_.spheres);
   kernels_.sides(floor, grains, settings_.floor);
   kernels_.sides(lists_.sides(), grains, settings_.sides);
-  if (floor_moves() || floor_.height != before.height) {
+  if (floor_moves() || floor_.height != floor_before.height) {
     const double force = lists_.floor_force();
-    floor_work_ += 0.5 * (floor_force_ + force) * (floor_.height - before.height);
+    floor_work_ += 0.5 * (floor_force_ + force) * (floor_.height - floor_before.height);
     floor_force_ = force;
   } else {
     floor_force_ = 0;
@@ -236,8 +237,8 @@ void GrainLoop::step() {
 
 double GrainLoop::farthest_since(const std::vector<Vec3>& reference, const Vec3& drift) const {
   double farthest = 0;
-  for (std::size_t at = 0; at < reference.size(); ++at)
-    farthest = std::max(farthest, norm_squared(centre_of(rows_[at]) - reference[at] - drift));
+  for (std::size_t index = 0; index < reference.size(); ++index)
+    farthest = std::max(farthest, norm_squared(centre_of(rows_[index]) - reference[index] - drift));
   return std::sqrt(farthest);
 }
 
@@ -262,15 +263,15 @@ void GrainLoop::renew_lists() {
     }
     lists_.find_far({rows_.data(), n}, numbers_);
     far_reference_.resize(n);
-    for (std::size_t at = 0; at < n; ++at) far_reference_[at] = centre_of(rows_[at]);
+    for (std::size_t index = 0; index < n; ++index) far_reference_[index] = centre_of(rows_[index]);
     far_drift_ = {};
   }
   lists_.find_near({rows_.data(), n}, floor_.height);
   near_reference_.resize(n);
   drift_ = {};
-  for (std::size_t at = 0; at < n; ++at) {
-    near_reference_[at] = centre_of(rows_[at]);
-    drift_ = drift_ + velocity_of(rows_[at]);
+  for (std::size_t index = 0; index < n; ++index) {
+    near_reference_[index] = centre_of(rows_[index]);
+    drift_ = drift_ + velocity_of(rows_[index]);
   }
   drift_ = (1.0 / static_cast<double>(n)) * drift_;
   near_drift_ = {};
@@ -282,9 +283,9 @@ double GrainLoop::kinetic_energy() const {
   double sum = 0;
   const bool has_half_rows = kernels_.sees_full_step;
   for (std::uint32_t number = 0; number < place_of_.size(); ++number) {
-    const std::uint32_t at = place_of_[number];
-    const SphereRow& row = has_half_rows ? half_rows_[at] : rows_[at];
-    const double spin_z = has_half_rows ? half_spin_z_[at] : spin_z_[at];
+    const std::uint32_t index = place_of_[number];
+    const SphereRow& row = has_half_rows ? half_rows_[index] : rows_[index];
+    const double spin_z = has_half_rows ? half_spin_z_[index] : spin_z_[index];
     sum += mass_of(number) * norm_squared(velocity_of(row)) +
            inertia_of(number) * norm_squared(spin_of(row, spin_z));
   }
@@ -300,8 +301,8 @@ double GrainLoop::mass() const {
 
 bool GrainLoop::is_sound() const {
   if (!(lists_.deepest() < deepest_possible)) return false;
-  for (std::size_t at = 0; at < numbers_.size(); ++at) {
-    const Vec3 r = centre_of(rows_[at]);
+  for (std::size_t index = 0; index < numbers_.size(); ++index) {
+    const Vec3 r = centre_of(rows_[index]);
     const bool inside = r.z > floor_.height - 1 && r.z < widest_container &&
                         (boundary_.periodic_x || (r.x > -1 && r.x < boundary_.width_x + 1)) &&
                         (boundary_.periodic_y || (r.y > -1 && r.y < boundary_.width_y + 1));
@@ -331,7 +332,7 @@ void GrainLoop::restore(const State& state) {
   motion_ = state.motion;
   steps_ = state.steps;
   time_ = static_cast<double>(steps_) * settings_.time_step;
-  floor_ = steps_ > 0 ? motion_.at(static_cast<double>(steps_ - 1) * settings_.time_step)
+  floor_ = steps_ > 0 ? motion_.place_at(static_cast<double>(steps_ - 1) * settings_.time_step)
                       : FloorMotion::Place{};
   floor_work_ = state.floor_work;
   floor_force_ = state.floor_force;

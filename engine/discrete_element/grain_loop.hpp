@@ -78,7 +78,7 @@ class GrainLoop {
   void store(Packing& bed) const;
   std::vector<GrainState> grains() const;  // in the order of load()
   /// Moves every centre, as a tap that is a displacement does; velocities stay.
-  void displace(const Packing& to);
+  void displace(const Packing& displaced);
 
   /// The floor moves from the next step on.
   void begin_motion(const FloorMotion& motion);
@@ -128,8 +128,8 @@ class GrainLoop {
   void find_forces();
   Energies contact_energies() const;
   double sliding_share() const;
-  void add_contacts(std::vector<Contact>& out);
-  void add_velocities(BedMechanics& out);
+  void add_contacts(std::vector<Contact>& contacts);
+  void add_velocities(BedMechanics& mechanics);
   void renew_lists();
   bool near_lists_hold();
   Approach approach_of(const KeptPair& pair) const;

@@ -68,7 +68,7 @@ struct LastingOf {
 };
 
 double friction_of(const ContactLaw& law) {
-  return std::visit([](const auto& one) { return one.friction; }, law);
+  return std::visit([](const auto& contact_law) { return contact_law.friction; }, law);
 }
 
 double sphere_mass(const DiscreteElement& settings) {
@@ -92,26 +92,28 @@ ReducedSettings reduced(const DiscreteElement& settings, const LightestMasses& l
   if (floor.index() != settings.spheres.index() || sides.index() != settings.spheres.index())
     throw std::invalid_argument("spheres, floor and sides have one kind of contact law");
   const double unit = sphere_mass(settings) * settings.gravity / settings.diameter;
-  ReducedSettings out;
-  out.law = law_of(settings, floor, sides);
-  out.seconds = std::sqrt(settings.diameter / settings.gravity);
+  ReducedSettings reduced_settings;
+  reduced_settings.law = law_of(settings, floor, sides);
+  reduced_settings.seconds = std::sqrt(settings.diameter / settings.gravity);
   double shortest = std::numeric_limits<double>::infinity();
   // All times of a contact go with the root of the mass.
   const auto constants = [&](const ContactLaw& law, double mass, double least_mass) {
     const LawConstants made = std::visit(MakeConstants{unit, mass}, law);
-    const Lasting lasts =
-        std::visit([&](const auto& one) { return LastingOf{mass}(one, made); }, law);
+    const Lasting lasts = std::visit(
+        [&](const auto& contact_law) { return LastingOf{mass}(contact_law, made); }, law);
     const double root = std::sqrt(least_mass / mass);
     shortest = std::min({shortest, root * lasts.whole, root * lasts.faster});
-    if (mass < 1) out.contact_time = root * lasts.whole;
+    if (mass < 1) reduced_settings.contact_time = root * lasts.whole;
     return made;
   };
-  out.spheres = constants(settings.spheres, 0.5, lightest.pair);
-  out.floor = constants(floor, 1, lightest.sphere);
-  out.sides = constants(sides, 1, lightest.sphere);
-  out.time_step = shortest / steps_of_contact(settings);
-  for (LawConstants* one : {&out.spheres, &out.floor, &out.sides}) one->time_step = out.time_step;
-  return out;
+  reduced_settings.spheres = constants(settings.spheres, 0.5, lightest.pair);
+  reduced_settings.floor = constants(floor, 1, lightest.sphere);
+  reduced_settings.sides = constants(sides, 1, lightest.sphere);
+  reduced_settings.time_step = shortest / steps_of_contact(settings);
+  for (LawConstants* law_constants :
+       {&reduced_settings.spheres, &reduced_settings.floor, &reduced_settings.sides})
+    law_constants->time_step = reduced_settings.time_step;
+  return reduced_settings;
 }
 
 double steps_of_contact(const DiscreteElement& settings) {

@@ -35,7 +35,7 @@ T get_numbers(ByteReader& reader) {
 }
 
 bool are_finite(std::span<const double> numbers) {
-  return std::ranges::all_of(numbers, [](double one) { return std::isfinite(one); });
+  return std::ranges::all_of(numbers, [](double value) { return std::isfinite(value); });
 }
 
 // A sphere that lists can be made for. Beds wander through periodic sides; what is thrown higher is
@@ -85,7 +85,7 @@ GrainDynamicsState read(ByteReader& reader) {
   state.quiet_since = reader.get<double>();
   state.input = reader.get<double>();
   state.dropped_offsets = reader.get<std::uint64_t>();
-  state.before = get_numbers<Energies>(reader);
+  state.start_energies = get_numbers<Energies>(reader);
   if (found == version_of_watched) {
     state.driven.bin_width = reader.get<double>();
     state.driven.samples = reader.get<std::uint64_t>();
@@ -116,7 +116,7 @@ std::vector<std::byte> bytes_of(const GrainDynamicsState& state) {
   writer.put(state.quiet_since);
   writer.put(state.input);
   writer.put(state.dropped_offsets);
-  put_numbers(writer, state.before);
+  put_numbers(writer, state.start_energies);
   if (watched) {
     writer.put(state.driven.bin_width);
     writer.put(state.driven.samples);

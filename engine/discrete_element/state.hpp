@@ -15,7 +15,7 @@ struct GrainDynamicsState {
   double quiet_since = -1;  // time of the tap since which the bed is quiet; negative: it is not
   double input = 0;         // by a displacement at the tap's begin, m g d
   std::uint64_t dropped_offsets = 0;  // dropped offsets of a shake at the tap's begin
-  Energies before;                    // at the beginning of the tap, after the displacement
+  Energies start_energies;            // at the beginning of the tap, after the displacement
   DrivenSums driven;                  // state of a tap whose motion is watched
   GrainLoop::State loop;
 };

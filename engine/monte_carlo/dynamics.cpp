@@ -153,10 +153,11 @@ class MonteCarloDynamics final : public Dynamics {
   }
 
   void relax_for(std::uint64_t trials) {
-    const TrialTally before = loop().tally();
+    const TrialTally tally_before = loop().tally();
     relax(loop(), relaxation().stop, state_.stop_window, state_.progress, trials);
-    const TrialTally& after = loop().tally();
-    effort_ += {after.trials - before.trials, after.distance_tests - before.distance_tests};
+    const TrialTally& tally_after = loop().tally();
+    effort_ += {tally_after.trials - tally_before.trials,
+                tally_after.distance_tests - tally_before.distance_tests};
     if (!moving()) loop().store(packing_);
   }
 

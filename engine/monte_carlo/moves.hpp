@@ -21,7 +21,7 @@ inline constexpr NameTable<ThetaLaw, 3> theta_laws{{{"gaussian", ThetaLaw::gauss
                                                     {"linear", ThetaLaw::linear}}};
 
 /// A longer step could go round the narrowest periodic box.
-inline constexpr Range step_length_range = between(1e-9, least_periodic_width);
+inline constexpr Range step_length_range = closed_range(1e-9, least_periodic_width);
 
 /// Scales of the law of theta that make a table.
 inline constexpr double least_theta0 = 1e-6, most_theta0 = 1000;
@@ -34,7 +34,7 @@ struct PolarMove {
   ThetaLaw law = ThetaLaw::gaussian;
   bool operator==(const PolarMove&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "polar",
       "A downward step, accepted where nothing overlaps (Philippe & Bideau 2001). The default",
       "Polar move"};
@@ -42,7 +42,8 @@ struct PolarMove {
     return std::tuple{
         field("max_step", &PolarMove::max_step, Number{step_length_range, "diameters"},
               "Largest length of a step"),
-        field("theta0", &PolarMove::theta0, Number{between(least_theta0, most_theta0), "radians"},
+        field("theta0", &PolarMove::theta0,
+              Number{closed_range(least_theta0, most_theta0), "radians"},
               "Width of the law of the angle from the downward vertical"),
         field("law", &PolarMove::law, word(theta_laws),
               "Density in theta on [0, pi/2]: exp(-(theta/theta0)^2), exp(-theta/theta0) or "
@@ -69,9 +70,9 @@ struct StepAdaptation {
   bool operator==(const StepAdaptation&) const = default;
 
   static constexpr auto fields() {
-    return std::tuple{field("factor", &StepAdaptation::factor, Number{strictly_between(0, 1)}),
+    return std::tuple{field("factor", &StepAdaptation::factor, Number{open_range(0, 1)}),
                       field("every_trials", &StepAdaptation::every_trials, Whole{1, most_trials}),
-                      field("threshold", &StepAdaptation::threshold, Number{above(0, 1)}),
+                      field("threshold", &StepAdaptation::threshold, Number{left_open_range(0, 1)}),
                       field("of", &StepAdaptation::base, word(acceptance_bases),
                             "The trials of which the share is taken"),
                       field("reset_each_tap", &StepAdaptation::reset_each_tap, Flag{},
@@ -89,13 +90,13 @@ struct MetropolisMove {
   std::optional<StepAdaptation> adaptation = std::nullopt;  // absent: the step is fixed
   bool operator==(const MetropolisMove&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "metropolis", "A displacement uniform in a cube (Rosato et al. 2010)", "Metropolis move"};
   static constexpr auto fields() {
     return std::tuple{
         field("max_step", &MetropolisMove::max_step, Number{step_length_range, "diameters"},
               "Largest displacement along an axis"),
-        field("beta", &MetropolisMove::beta, or_word(Number{above(0, 1e300)}, "infinity"),
+        field("beta", &MetropolisMove::beta, or_word(Number{left_open_range(0, 1e300)}, "infinity"),
               "1/temperature in units of 1/(m g d); infinity: no move goes up"),
         field("adapt", &MetropolisMove::adaptation, or_word(Object<StepAdaptation>{}, "never"),
               "never, or: every every_trials trials the step is multiplied by factor if fewer than "

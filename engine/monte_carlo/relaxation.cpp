@@ -34,10 +34,10 @@ struct Measure {
   }
   bool operator()(const BulkFractionStop& rule) const {
     if (progress.trials == 0 && !rule.measure_start) return false;
-    const double before = progress.last_value;
+    const double previous = progress.last_value;
     const double now = progress.last_value = loop.solids_fraction(window);
     if (!std::exchange(progress.measured, true)) return false;
-    progress.passes = std::abs(now - before) <= rule.change ? progress.passes + 1 : 0;
+    progress.passes = std::abs(now - previous) <= rule.change ? progress.passes + 1 : 0;
     return progress.passes >= rule.times;
   }
   bool operator()(const SweepsStop& rule) const {
@@ -50,11 +50,11 @@ struct Measure {
   // false at the first test.
   template <class Bound>
   bool changes_less_than(const Bound& bound) const {
-    const double before = progress.last_value;
+    const double previous = progress.last_value;
     const double now = progress.last_value = loop.mean_height();
     const auto kinds_before = std::exchange(progress.kind_heights, loop.kind_heights());
     if (!std::exchange(progress.measured, true)) return false;
-    if (!(std::abs(now - before) < bound(before))) return false;
+    if (!(std::abs(now - previous) < bound(previous))) return false;
     return std::ranges::equal(kinds_before, progress.kind_heights, [&](double was, double is) {
       return std::abs(is - was) < bound(was);
     });

@@ -14,9 +14,9 @@ std::optional<std::string> sampler_fault(Sampler sampler, const Move& move,
                                          const Container& container) {
   static_assert(std::variant_size_v<Move> == 2, "add the samplers that suit the new move here");
   if (sampler == Sampler::exhaustive) return std::nullopt;
-  std::string why;
+  std::string fault_text;
   const auto add = [&](const char* reason) {
-    why += (why.empty() ? "" : "; ") + std::string(reason);
+    fault_text += (fault_text.empty() ? "" : "; ") + std::string(reason);
   };
   if (!has_gravity(container)) {
     add("skipping needs trials that only fall, and without gravity (fully_periodic) none does");
@@ -30,8 +30,8 @@ std::optional<std::string> sampler_fault(Sampler sampler, const Move& move,
           "(\"of\": \"not_upward\")");
     }
   }
-  if (why.empty()) return std::nullopt;
-  return why + ": use \"exhaustive\"";
+  if (fault_text.empty()) return std::nullopt;
+  return fault_text + ": use \"exhaustive\"";
 }
 
 }  // namespace jostle::inline engine

@@ -24,12 +24,12 @@ struct MeanHeightStop {
   std::uint64_t every_sweeps = 100;
   bool operator==(const MeanHeightStop&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "mean_height",
       "The mean height changed by less than eta, relatively, or by less than change, in diameters, "
       "between two tests. Not both"};
   static constexpr auto fields() {
-    return std::tuple{field("eta", &MeanHeightStop::eta, Number{strictly_between(0, 1)},
+    return std::tuple{field("eta", &MeanHeightStop::eta, Number{open_range(0, 1)},
                             "Relative change of the mean height"),
                       field("every_sweeps", &MeanHeightStop::every_sweeps, Whole{1, most_sweeps},
                             "Sweeps between two tests")};
@@ -44,9 +44,10 @@ struct HeightChangeStop {
   std::uint64_t every_sweeps = 100;
   bool operator==(const HeightChangeStop&) const = default;
 
-  static constexpr About about{"mean_height"};  // a key distinguishes it from MeanHeightStop
+  static constexpr Description description{
+      "mean_height"};  // a key distinguishes it from MeanHeightStop
   static constexpr auto fields() {
-    return std::tuple{field("change", &HeightChangeStop::change, Number{above(0, 1)},
+    return std::tuple{field("change", &HeightChangeStop::change, Number{left_open_range(0, 1)},
                             "Absolute change, diameters: the same for beds of every depth",
                             {.required = "the change of the mean height"}),
                       field("every_sweeps", &HeightChangeStop::every_sweeps, Whole{1, most_sweeps},
@@ -65,13 +66,13 @@ struct BulkFractionStop {
   Window window = QuantileWindow{};
   bool operator==(const BulkFractionStop&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "bulk_fraction",
       "The packing fraction of a window changed by at most change, several times in a row (Rosato "
       "et al. 2010). Can stop a bed in mid-air"};
   static constexpr auto fields() {
     return std::tuple{
-        field("change", &BulkFractionStop::change, Number{between(0, 1)}),
+        field("change", &BulkFractionStop::change, Number{closed_range(0, 1)}),
         field("every_trials", &BulkFractionStop::every_trials, Whole{1, most_trials},
               "Trials between two measurements"),
         field("times", &BulkFractionStop::times, Whole{1, 1000}),
@@ -86,7 +87,7 @@ struct SweepsStop {
   std::uint64_t sweeps = 1000;
   bool operator==(const SweepsStop&) const = default;
 
-  static constexpr About about{"sweeps", "A fixed number of sweeps"};
+  static constexpr Description description{"sweeps", "A fixed number of sweeps"};
   static constexpr auto fields() {
     return std::tuple{field("", &SweepsStop::sweeps, Whole{1, most_sweeps})};
   }

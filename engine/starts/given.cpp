@@ -16,19 +16,19 @@ std::string in_diameters(double depth) {
   return std::string(text) + " diameters";
 }
 
-[[noreturn]] void refuse(const std::string& why) {
-  throw StartError("given packing: " + why);
+[[noreturn]] void refuse(const std::string& reason) {
+  throw StartError("given packing: " + reason);
 }
 
 void check_overlaps(const Packing& packing, double most_overlap) {
   const Overlap worst = deepest_overlap(packing);
   if (worst.depth <= std::max(overlap_bound(packing), most_overlap)) return;
-  const std::string with = worst.second < 0 ? "the floor or a side of the container"
-                                            : "sphere " + std::to_string(worst.second);
+  const std::string partner = worst.second < 0 ? "the floor or a side of the container"
+                                               : "sphere " + std::to_string(worst.second);
   const std::string hint =
       most_overlap > 0 ? "; \"overlap\" allows " + in_diameters(most_overlap)
                        : "; packings of discrete elements overlap: set \"overlap\" to the depth";
-  refuse("sphere " + std::to_string(worst.first) + " overlaps " + with + " by " +
+  refuse("sphere " + std::to_string(worst.first) + " overlaps " + partner + " by " +
          in_diameters(worst.depth) +
          ", the deepest overlap of the packing; check that its lengths are in diameters and that "
          "it was made in this container, and that no digits were dropped when it was written" +

@@ -22,15 +22,15 @@ class GrowingSpheres {
     const double dx = max_step * (1 - 2 * random.uniform());
     const double dy = max_step * (1 - 2 * random.uniform());
     const double dz = max_step * (1 - 2 * random.uniform());
-    const Vec3 from = spheres_.centres()[sphere];
-    const Vec3 to = wrapped(spheres_.box(), {from.x + dx, from.y + dy, from.z + dz});
-    const double there = spheres_.in_reach(sphere, to) ? room(sphere, to) : 0;
-    if (there >= growths_[sphere]) {
-      spheres_.move(sphere, to);
+    const Vec3 start = spheres_.centres()[sphere];
+    const Vec3 end = wrapped(spheres_.box(), {start.x + dx, start.y + dy, start.z + dz});
+    const double free_room = spheres_.in_reach(sphere, end) ? room(sphere, end) : 0;
+    if (free_room >= growths_[sphere]) {
+      spheres_.move(sphere, end);
       ++accepted_;
-      grow(sphere, std::min(there, limit));
+      grow(sphere, std::min(free_room, limit));
     } else if (growths_[sphere] < limit) {
-      grow(sphere, std::min(room(sphere, from), limit));
+      grow(sphere, std::min(room(sphere, start), limit));
     }
   }
 
@@ -46,9 +46,9 @@ class GrowingSpheres {
   double room(std::uint32_t sphere, Vec3 r) const {
     double largest = 1;
     const double own = spheres_.diameter(sphere);
-    for (const std::uint32_t other : spheres_.near(sphere)) {
-      const double squared = spheres_.squared_distance(r, other);
-      const double diameter = growths_[other] * spheres_.diameter(other);
+    for (const std::uint32_t neighbour : spheres_.near(sphere)) {
+      const double squared = spheres_.squared_distance(r, neighbour);
+      const double diameter = growths_[neighbour] * spheres_.diameter(neighbour);
       const double full = 0.5 * (own + diameter);
       if (squared >= full * full) continue;
       largest = std::min(largest, (2 * std::sqrt(squared) - diameter) / own);
@@ -101,8 +101,8 @@ std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, const Sta
     if (sweep % renewal == 0) spheres.renew_lists();
     const std::uint64_t accepted = spheres.accepted();
     for (std::uint32_t trial = 0; trial < n_spheres; ++trial) {
-      spheres.step_and_grow(static_cast<std::uint32_t>(random.below(n_spheres)), max_step, limit,
-                            random);
+      spheres.step_and_grow(static_cast<std::uint32_t>(random.integer_below(n_spheres)), max_step,
+                            limit, random);
     }
     const bool rarely = 10 * (spheres.accepted() - accepted) < 3 * std::uint64_t{n_spheres};
     max_step = std::clamp(max_step * (rarely ? 0.95 : 1.05), shortest_step, longest_step);

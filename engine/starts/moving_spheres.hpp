@@ -31,9 +31,9 @@ class MovingSpheres {
   std::span<const std::uint32_t> near(std::uint32_t sphere) const {
     return {entries_.data() + first_[sphere], entries_.data() + first_[sphere + 1]};
   }
-  /// The squared distance of sphere `other` from a point.
-  double squared_distance(Vec3 r, std::uint32_t other) const {
-    return norm_squared(separation(box_, r, centres()[other]));
+  /// The squared distance of sphere `neighbour` from a point.
+  double squared_distance(Vec3 r, std::uint32_t neighbour) const {
+    return norm_squared(separation(box_, r, centres()[neighbour]));
   }
 
   /// True if the lists still hold for a sphere moved to r: within half a skin of its position at

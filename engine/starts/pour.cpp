@@ -13,20 +13,20 @@ Vec3 draw_drop(const PourBed& bed, RandomStream& random) {
   // A tube takes pi / 4 of the draws: a thousand misses in a row are beyond chance.
   for (int draw = 0; draw < 1000; ++draw) {
     const double share_x = random.uniform(), share_y = random.uniform();
-    if (const auto p = bed.above(share_x, share_y)) return *p;
+    if (const auto p = bed.drop_point_of_shares(share_x, share_y)) return *p;
   }
   throw StartError("steepest-descent pour: no place to drop a sphere from; widen the container");
 }
 
 Vec3 pour_placed(const PourBed& bed, const PlacedSphere& placed) {
-  const auto refuse = [&](const std::string& why) {
+  const auto refuse = [&](const std::string& reason) {
     throw StartError("steepest-descent pour: sphere " + std::to_string(placed.sphere) +
                      " has the place (" + std::to_string(placed.x) + ", " +
-                     std::to_string(placed.y) + "), " + why);
+                     std::to_string(placed.y) + "), " + reason);
   };
-  const auto from = bed.over(placed.x, placed.y);
-  if (!from) refuse("where it overlaps a side; move it inwards");
-  const auto rest = descend(bed, *from);
+  const auto start = bed.drop_point(placed.x, placed.y);
+  if (!start) refuse("where it overlaps a side; move it inwards");
+  const auto rest = descend(bed, *start);
   if (!rest) refuse("from where it finds no place to rest; change it by a little");
   return *rest;
 }

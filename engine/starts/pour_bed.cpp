@@ -14,12 +14,12 @@ constexpr double least_room = 1e-6;
 
 // Walls that keep a centre in [radius, width - radius] along one direction, or, in a tube too
 // narrow to roll in, on its axis.
-void add_walls(std::vector<Obstacle>& walls, Vec3 along, double width, double radius, double room,
-               bool on_axis) {
+void add_walls(std::vector<Obstacle>& walls, Vec3 direction, double width, double radius,
+               double room, bool on_axis) {
   double low = radius, high = width - radius;
   if (on_axis || high - low < room) low = high = 0.5 * width;
-  walls.push_back({Obstacle::Kind::wall, along, low});
-  walls.push_back({Obstacle::Kind::wall, -1.0 * along, -high});
+  walls.push_back({Obstacle::Kind::wall, direction, low});
+  walls.push_back({Obstacle::Kind::wall, -1.0 * direction, -high});
 }
 
 }  // namespace
@@ -27,24 +27,25 @@ void add_walls(std::vector<Obstacle>& walls, Vec3 along, double width, double ra
 double gap(const Obstacle& obstacle, Vec3 p) {
   switch (obstacle.kind) {
     case Obstacle::Kind::sphere:
-      return std::sqrt(norm_squared(p - obstacle.at)) - obstacle.reach;
+      return std::sqrt(norm_squared(p - obstacle.anchor)) - obstacle.reach;
     case Obstacle::Kind::wall:
     case Obstacle::Kind::floor:
-      return dot(obstacle.at, p) - obstacle.reach;
+      return dot(obstacle.anchor, p) - obstacle.reach;
     case Obstacle::Kind::tube:
       break;
   }
-  const double dx = p.x - obstacle.at.x, dy = p.y - obstacle.at.y;
+  const double dx = p.x - obstacle.anchor.x, dy = p.y - obstacle.anchor.y;
   return obstacle.reach - std::sqrt(dx * dx + dy * dy);
 }
 
 Vec3 outward(const Obstacle& obstacle, Vec3 p) {
   if (obstacle.kind == Obstacle::Kind::wall || obstacle.kind == Obstacle::Kind::floor)
-    return obstacle.at;
-  Vec3 away = p - obstacle.at;
-  if (obstacle.kind == Obstacle::Kind::tube) away = {-away.x, -away.y, 0};
-  const double length = std::sqrt(norm_squared(away));
-  return length > 0 ? (1 / length) * away : Vec3{};
+    return obstacle.anchor;
+  Vec3 outward_vector = p - obstacle.anchor;
+  if (obstacle.kind == Obstacle::Kind::tube)
+    outward_vector = {-outward_vector.x, -outward_vector.y, 0};
+  const double length = std::sqrt(norm_squared(outward_vector));
+  return length > 0 ? (1 / length) * outward_vector : Vec3{};
 }
 
 PourBed::PourBed(const Container& container, std::uint32_t n_spheres) : boundary_(container) {
@@ -109,14 +110,14 @@ Vec3 PourBed::wrapped(Vec3 p) const {
   return jostle::wrapped(boundary_, p);
 }
 
-void PourBed::gather(Vec3 p, double within, std::vector<Obstacle>& found) const {
+void PourBed::gather(Vec3 p, double distance, std::vector<Obstacle>& found) const {
   constexpr std::size_t usual = 24;
   found.reserve(usual);
   found = walls_;
   if (tube_) found.push_back(*tube_);
   for_each_level([&](const SphereCells& cells, auto reach) {
-    cells.any_near(p, reach.most() + within, [&, within](std::uint32_t index, Vec3 image) {
-      const double touching = reach(index), farthest = touching + within;
+    cells.any_near(p, reach.most() + distance, [&, distance](std::uint32_t index, Vec3 image) {
+      const double touching = reach(index), farthest = touching + distance;
       if (norm_squared(image - p) <= farthest * farthest)
         found.push_back({Obstacle::Kind::sphere, image, touching});
       return false;
@@ -156,8 +157,8 @@ double PourBed::height_above_all() const {
 
 void PourBed::keep_between_walls(Vec3& p) const {
   for (const Obstacle& side : walls_) {
-    if (side.at.x != 0 && gap(side, p) < 0) p.x = side.reach / side.at.x;
-    if (side.at.y != 0 && gap(side, p) < 0) p.y = side.reach / side.at.y;
+    if (side.anchor.x != 0 && gap(side, p) < 0) p.x = side.reach / side.anchor.x;
+    if (side.anchor.y != 0 && gap(side, p) < 0) p.y = side.reach / side.anchor.y;
   }
 }
 
@@ -169,11 +170,11 @@ bool PourBed::push_out(Vec3& p) const {
   for_each_level([&](const SphereCells& cells, auto reach) {
     cells.any_near(probe, reach.most() + 1e-9 * unit_, [&](std::uint32_t index, Vec3) {
       const double distance = reach(index);
-      const Vec3 apart = separation(boundary_, p, cells.centres()[index]);
-      const double squared = norm_squared(apart);
+      const Vec3 offset = separation(boundary_, p, cells.centres()[index]);
+      const double squared = norm_squared(offset);
       if (squared >= distance * distance) return false;
       const double beyond_rounding = 2.3e-16 * (distance + probe.x + probe.y + probe.z);
-      p = p + ((distance - std::sqrt(squared) + beyond_rounding) / distance) * apart;
+      p = p + ((distance - std::sqrt(squared) + beyond_rounding) / distance) * offset;
       pushed = true;
       return false;
     });
@@ -188,8 +189,8 @@ bool PourBed::clear(Vec3& p, double tolerance) const {
     keep_between_walls(p);
     if (tube_ && gap(*tube_, p) <= 0) {
       const double shrink = 1 - 2e-16 + gap(*tube_, p) / tube_->reach;
-      p.x = tube_->at.x + shrink * (p.x - tube_->at.x);
-      p.y = tube_->at.y + shrink * (p.y - tube_->at.y);
+      p.x = tube_->anchor.x + shrink * (p.x - tube_->anchor.x);
+      p.y = tube_->anchor.y + shrink * (p.y - tube_->anchor.y);
     }
   }
   p = wrapped(p);
@@ -199,7 +200,7 @@ bool PourBed::clear(Vec3& p, double tolerance) const {
                      [&](const Obstacle& obstacle) { return gap(obstacle, p) >= -tolerance; });
 }
 
-std::optional<Vec3> PourBed::above(double share_x, double share_y) const {
+std::optional<Vec3> PourBed::drop_point_of_shares(double share_x, double share_y) const {
   const double margin_x = boundary_.periodic_x ? 0 : radius_,
                margin_y = boundary_.periodic_y ? 0 : radius_;
   Vec3 p = {margin_x + share_x * (boundary_.width_x - 2 * margin_x),
@@ -209,7 +210,7 @@ std::optional<Vec3> PourBed::above(double share_x, double share_y) const {
   return wrapped(p);
 }
 
-std::optional<Vec3> PourBed::over(double x, double y) const {
+std::optional<Vec3> PourBed::drop_point(double x, double y) const {
   Vec3 p = {x, y, height_above_all()};
   if (!in_footprint(boundary_, p, radius_)) return std::nullopt;
   keep_between_walls(p);

@@ -17,7 +17,7 @@ namespace jostle::inline engine {
 struct Obstacle {
   enum class Kind { sphere, wall, floor, tube };
   Kind kind = Kind::sphere;
-  Vec3 at;  // sphere: its centre. wall, floor: unit normal into the container. tube: its axis
+  Vec3 anchor;  // sphere: its centre. wall, floor: unit normal into the container. tube: its axis
   // sphere: the distance of centres that touch. wall, floor: at . centre >= reach. tube: distance
   // from the axis <= reach
   double reach = 0;
@@ -48,9 +48,9 @@ class PourBed {
 
   /// Brings p, at most one period away, into the box.
   Vec3 wrapped(Vec3 p) const;
-  /// All spheres (periodic images, too) to which the gap from p may be at most `within`, and all
+  /// All spheres (periodic images, too) to which the gap from p may be at most `distance`, and all
   /// sides; the floor, too, where spheres are poured whose centres may lie lower on it.
-  void gather(Vec3 p, double within, std::vector<Obstacle>& found) const;
+  void gather(Vec3 p, double distance, std::vector<Obstacle>& found) const;
   /// Height at which a centre falling straight down from p first touches a sphere that it does not
   /// touch yet; nothing if it reaches the floor.
   std::optional<double> fall(Vec3 p) const;
@@ -62,9 +62,9 @@ class PourBed {
   bool clear(Vec3& p, double tolerance) const;
   /// A place for a centre to fall from: the given shares of the footprint's widths, above every
   /// sphere; nothing if that is outside the sides.
-  std::optional<Vec3> above(double share_x, double share_y) const;
+  std::optional<Vec3> drop_point_of_shares(double share_x, double share_y) const;
   /// The place over (x, y) above every sphere; nothing if that is outside the sides.
-  std::optional<Vec3> over(double x, double y) const;
+  std::optional<Vec3> drop_point(double x, double y) const;
 
   /// Adds the sphere that is poured next at rest.
   void add(Vec3 centre);

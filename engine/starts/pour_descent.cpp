@@ -31,16 +31,16 @@ bool opens(Vec3 motion, const std::vector<Vec3>& outwards, double slack) {
   const double speed = std::sqrt(norm_squared(motion));
   const double tangential = 1e-3 * std::min(1e-6, speed) + slack * speed;
   return std::all_of(outwards.begin(), outwards.end(),
-                     [&](Vec3 out) { return dot(motion, out) >= -tangential; });
+                     [&](Vec3 outward) { return dot(motion, outward) >= -tangential; });
 }
 
 // Gravity projected on the plane perpendicular to one contact; nothing if that contact pulls or
 // the projection vanishes but for rounding.
 constexpr double still = 1e-22;  // squared
 
-std::optional<Vec3> slide(Vec3 out) {
-  const double push = -dot(downward, out);
-  const Vec3 motion = downward + push * out;
+std::optional<Vec3> slide(Vec3 outward) {
+  const double push = -dot(downward, outward);
+  const Vec3 motion = downward + push * outward;
   if (push <= 0 || norm_squared(motion) < still) return std::nullopt;
   return motion;
 }
@@ -95,7 +95,7 @@ std::optional<Turn> roll(const PourBed& bed, Vec3 p, const std::vector<Obstacle>
   std::vector<Obstacle> obstacles;
   const Obstacle sphere = supports[0];
   const double unit = bed.unit();
-  bed.gather(sphere.at, sphere.reach + 1e-9 * unit, obstacles);
+  bed.gather(sphere.anchor, sphere.reach + 1e-9 * unit, obstacles);
   if (supports.size() == 1) return Turn{follow(arc_on(sphere, p), p, obstacles, supports, unit)};
   switch (supports[1].kind) {
     case Obstacle::Kind::sphere:
@@ -156,8 +156,8 @@ bool carried(const std::vector<Vec3>& outwards) {
 // overlap.
 Vec3 polished(Vec3 p, const std::vector<Obstacle>& contacts, double unit) {
   const double rounding = 4.4e-16 * (unit + std::abs(p.x) + std::abs(p.y) + p.z);
-  const auto excess = [&](const Obstacle& contact, Vec3 at) {
-    return gap(contact, at) - (contact.kind == Obstacle::Kind::wall ? 0 : rounding);
+  const auto excess = [&](const Obstacle& contact, Vec3 position) {
+    return gap(contact, position) - (contact.kind == Obstacle::Kind::wall ? 0 : rounding);
   };
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (std::size_t j = i + 1; j < contacts.size(); ++j) {
@@ -203,19 +203,19 @@ std::optional<Vec3> at_rest(const PourBed& bed, Vec3 p) {
 
 std::optional<Vec3> open_direction(const std::vector<Vec3>& outwards) {
   constexpr double blocked = -1e-12;
-  const auto open = [&](Vec3 aside) {
+  const auto open = [&](Vec3 tangent) {
     return std::none_of(outwards.begin(), outwards.end(),
-                        [&](Vec3 out) { return dot(aside, out) < blocked; });
+                        [&](Vec3 outward) { return dot(tangent, outward) < blocked; });
   };
   // If any direction is open, so is one at the rim of a contact's half-plane.
   bool level = true;
-  for (const Vec3& out : outwards) {
-    const double length = std::sqrt(out.x * out.x + out.y * out.y);
+  for (const Vec3& outward : outwards) {
+    const double length = std::sqrt(outward.x * outward.x + outward.y * outward.y);
     if (length < 1e-12) continue;
     level = false;
-    const Vec3 aside = {-out.y / length, out.x / length, 0};
-    if (open(aside)) return aside;
-    if (open(-1.0 * aside)) return -1.0 * aside;
+    const Vec3 tangent = {-outward.y / length, outward.x / length, 0};
+    if (open(tangent)) return tangent;
+    if (open(-1.0 * tangent)) return -1.0 * tangent;
   }
   if (level) return Vec3{1, 0, 0};
   return std::nullopt;

@@ -13,9 +13,9 @@ Vec3 unit(Vec3 v) {
 }
 
 RollingArc directed(RollingArc arc, Vec3 p) {
-  const Vec3 out = (1 / arc.radius) * (p - arc.centre);
-  if (dot(out, arc.sideways) < 0) arc.sideways = -1.0 * arc.sideways;
-  arc.start = std::min(1.0, dot(out, arc.up));
+  const Vec3 outward = (1 / arc.radius) * (p - arc.centre);
+  if (dot(outward, arc.sideways) < 0) arc.sideways = -1.0 * arc.sideways;
+  arc.start = std::min(1.0, dot(outward, arc.upward));
   return arc;
 }
 
@@ -26,17 +26,17 @@ double sine(double cosine) {
 // Along the arc the (squared) gap to a sphere, flat wall or floor is constant - (sideways s + up
 // h).
 struct GapOnArc {
-  double constant, sideways, up;
+  double constant, sideways, upward;
 };
 
 GapOnArc gap_on(const RollingArc& arc, const Obstacle& obstacle) {
   if (obstacle.kind != Obstacle::Kind::sphere) {
-    return {gap(obstacle, arc.centre), -arc.radius * dot(obstacle.at, arc.sideways),
-            -arc.radius * dot(obstacle.at, arc.up)};
+    return {gap(obstacle, arc.centre), -arc.radius * dot(obstacle.anchor, arc.sideways),
+            -arc.radius * dot(obstacle.anchor, arc.upward)};
   }
-  const Vec3 away = obstacle.at - arc.centre;
-  return {arc.radius * arc.radius + norm_squared(away) - obstacle.reach * obstacle.reach,
-          2 * arc.radius * dot(away, arc.sideways), 2 * arc.radius * dot(away, arc.up)};
+  const Vec3 offset = obstacle.anchor - arc.centre;
+  return {arc.radius * arc.radius + norm_squared(offset) - obstacle.reach * obstacle.reach,
+          2 * arc.radius * dot(offset, arc.sideways), 2 * arc.radius * dot(offset, arc.upward)};
 }
 
 struct OnCircle {
@@ -83,8 +83,8 @@ std::optional<OnCircle> entry_into_tube(const RollingArc& arc, const Obstacle& t
   const auto found = first_contact(
       half_angle(sine(arc.start), arc.start), half_angle(sine(end), end), unit,
       [&](double t) {
-        const OnCircle on = on_quarter(t);
-        return gap(tube, arc.at(on.s, on.h));
+        const OnCircle crossing = on_quarter(t);
+        return gap(tube, arc.point_at(crossing.s, crossing.h));
       },
       [&](double t, double length) {
         return std::min(t + length / (2 * arc.radius), half_angle(sine(end), end));
@@ -96,67 +96,68 @@ std::optional<OnCircle> entry_into_tube(const RollingArc& arc, const Obstacle& t
 }  // namespace
 
 RollingArc arc_on(const Obstacle& sphere, Vec3 p) {
-  const Vec3 across = {p.x - sphere.at.x, p.y - sphere.at.y, 0};
-  return directed({sphere.at, unit(across), vertical, sphere.reach, 1, 0}, p);
+  const Vec3 across = {p.x - sphere.anchor.x, p.y - sphere.anchor.y, 0};
+  return directed({sphere.anchor, unit(across), vertical, sphere.reach, 1, 0}, p);
 }
 
-RollingArc arc_on(const Obstacle& sphere, const Obstacle& other, Vec3 p) {
-  const double a = sphere.reach, b = other.reach;
-  const Vec3 apart = other.at - sphere.at;
-  const double squared = norm_squared(apart), length = std::sqrt(squared);
-  const Vec3 axis = (1 / length) * apart;
-  const Vec3 up = unit(vertical - axis.z * axis);
+RollingArc arc_on(const Obstacle& sphere, const Obstacle& second, Vec3 p) {
+  const double a = sphere.reach, b = second.reach;
+  const Vec3 offset = second.anchor - sphere.anchor;
+  const double squared = norm_squared(offset), length = std::sqrt(squared);
+  const Vec3 axis = (1 / length) * offset;
+  const Vec3 upward = unit(vertical - axis.z * axis);
   // The circle's centre is so far from the sphere's, towards the other; beyond either where the
   // sizes differ much.
-  const double along = 0.5 * (length + (a - b) * (a + b) / length);
+  const double axial = 0.5 * (length + (a - b) * (a + b) / length);
   const bool alike = a == b;
-  const Vec3 centre = alike ? 0.5 * (sphere.at + other.at) : sphere.at + along * axis;
-  const double radius = std::sqrt(alike ? a * a - 0.25 * squared : (a - along) * (a + along));
+  const Vec3 centre = alike ? 0.5 * (sphere.anchor + second.anchor) : sphere.anchor + axial * axis;
+  const double radius = std::sqrt(alike ? a * a - 0.25 * squared : (a - axial) * (a + axial));
   // The share of the weight on the upper sphere vanishes where h up.z / radius = |axis.z| / lever,
   // the lever being the distance of the circle's centre from the lower one's.
-  const double lever = axis.z > 0 ? along : length - along;
-  const double end = lever > 0 ? std::min(1.0, radius * std::abs(axis.z) / (lever * up.z)) : 0;
-  return directed({centre, unit(cross(axis, vertical)), up, radius, 1, end}, p);
+  const double lever = axis.z > 0 ? axial : length - axial;
+  const double end = lever > 0 ? std::min(1.0, radius * std::abs(axis.z) / (lever * upward.z)) : 0;
+  return directed({centre, unit(cross(axis, vertical)), upward, radius, 1, end}, p);
 }
 
 RollingArc arc_along_wall(const Obstacle& sphere, const Obstacle& wall, Vec3 p) {
-  const double distance = gap(wall, sphere.at);
-  const Vec3 centre = sphere.at - distance * wall.at;
+  const double distance = gap(wall, sphere.anchor);
+  const Vec3 centre = sphere.anchor - distance * wall.anchor;
   const double radius = std::sqrt((sphere.reach - distance) * (sphere.reach + distance));
-  return directed({centre, cross(wall.at, vertical), vertical, radius, 1, 0}, p);
+  return directed({centre, cross(wall.anchor, vertical), vertical, radius, 1, 0}, p);
 }
 
 Vec3 follow(const RollingArc& arc, Vec3 p, std::span<const Obstacle> obstacles,
             std::span<const Obstacle> supports, double unit) {
   constexpr double rounding = 1e-12;
-  const double touching = 1e-10 * unit, beside = 1e-6 * unit;
+  const double touching = 1e-10 * unit, grazing = 1e-6 * unit;
   OnCircle first = {sine(arc.end), arc.end};
   bool met = false;
   for (const Obstacle& obstacle : obstacles) {
     if (obstacle.kind == Obstacle::Kind::tube || contains(supports, obstacle)) continue;
     const auto cut = chord(arc, obstacle);
     if (!cut) continue;
-    const OnCircle on = cut->entry;
-    if (on.s < 0 || on.h <= first.h) continue;
-    const bool behind = on.h > arc.start + rounding;
+    const OnCircle crossing = cut->entry;
+    if (crossing.s < 0 || crossing.h <= first.h) continue;
+    const bool is_behind = crossing.h > arc.start + rounding;
     const bool touched = obstacle.kind != Obstacle::Kind::floor && gap(obstacle, p) < touching;
     // The arc leaves a touched obstacle that is not in the way, but never the floor. Where the arc
     // bends into what it touches, rounding may put the entry behind p.
-    const bool grazed = touched && !cut->most && at_most(beside, arc.at(on.s, on.h) - p);
-    if (grazed ? at_most(beside, arc.at(cut->exit.s, cut->exit.h) - p)
-               : behind && !(touched && cut->most))
+    const bool grazed =
+        touched && !cut->most && at_most(grazing, arc.point_at(crossing.s, crossing.h) - p);
+    if (grazed ? at_most(grazing, arc.point_at(cut->exit.s, cut->exit.h) - p)
+               : is_behind && !(touched && cut->most))
       continue;
-    first = behind ? OnCircle{sine(arc.start), arc.start} : on;
+    first = is_behind ? OnCircle{sine(arc.start), arc.start} : crossing;
     met = true;
   }
   for (const Obstacle& obstacle : obstacles) {
     if (obstacle.kind != Obstacle::Kind::tube || contains(supports, obstacle)) continue;
-    if (const auto on = entry_into_tube(arc, obstacle, first.h, unit)) {
-      first = *on;
+    if (const auto crossing = entry_into_tube(arc, obstacle, first.h, unit)) {
+      first = *crossing;
       met = true;
     }
   }
-  Vec3 end = arc.at(first.s, first.h);
+  Vec3 end = arc.point_at(first.s, first.h);
   if (!met && arc.end == 0) end.z = arc.centre.z;
   return end;
 }
@@ -168,13 +169,13 @@ namespace {
 class TubePath {
  public:
   TubePath(const Obstacle& sphere, const Obstacle& tube, Vec3 p) : sphere_(sphere), tube_(tube) {
-    const double ox = sphere.at.x - tube.at.x, oy = sphere.at.y - tube.at.y;
+    const double ox = sphere.anchor.x - tube.anchor.x, oy = sphere.anchor.y - tube.anchor.y;
     offset_ = std::sqrt(ox * ox + oy * oy);
     toward_ = {ox / offset_, oy / offset_, 0};
-    aside_ = {-toward_.y, toward_.x, 0};
-    const Vec3 out = (1 / tube.reach) * (p - tube.at);
-    if (dot(out, aside_) < 0) aside_ = -1.0 * aside_;
-    start_ = parameter(std::clamp(dot(out, toward_), -1.0, 1.0));
+    sideways_ = {-toward_.y, toward_.x, 0};
+    const Vec3 outward = (1 / tube.reach) * (p - tube.anchor);
+    if (dot(outward, sideways_) < 0) sideways_ = -1.0 * sideways_;
+    start_ = parameter(std::clamp(dot(outward, toward_), -1.0, 1.0));
     const double level =
         (tube.reach * tube.reach + offset_ * offset_ - sphere.reach * sphere.reach) /
         (2 * tube.reach * offset_);
@@ -186,32 +187,32 @@ class TubePath {
   double end() const { return end_; }
   bool reaches_bottom() const { return reaches_bottom_; }
 
-  Vec3 at(double x) const {
-    const OnCircle on = x <= 1 ? on_quarter(x) : turned(on_quarter(x - 1));
-    Vec3 p = tube_.at + tube_.reach * (on.h * toward_ + on.s * aside_);
-    const double dx = p.x - sphere_.at.x, dy = p.y - sphere_.at.y;
-    p.z =
-        sphere_.at.z + std::sqrt(std::max(0.0, sphere_.reach * sphere_.reach - dx * dx - dy * dy));
+  Vec3 point_at(double x) const {
+    const OnCircle crossing = x <= 1 ? on_quarter(x) : turned(on_quarter(x - 1));
+    Vec3 p = tube_.anchor + tube_.reach * (crossing.h * toward_ + crossing.s * sideways_);
+    const double dx = p.x - sphere_.anchor.x, dy = p.y - sphere_.anchor.y;
+    p.z = sphere_.anchor.z +
+          std::sqrt(std::max(0.0, sphere_.reach * sphere_.reach - dx * dx - dy * dy));
     return p;
   }
 
   // A parameter after x within the given length of path.
   double advance(double x, double length) const {
-    const double height = at(x).z;
+    const double height = point_at(x).z;
     for (double step = length / (4 * tube_.reach);; step *= 0.5) {
       const double next = std::min(end_, x + step);
-      if (height - at(next).z <= 0.5 * length || step < 1e-13) return next;
+      if (height - point_at(next).z <= 0.5 * length || step < 1e-13) return next;
     }
   }
 
  private:
-  static OnCircle turned(OnCircle on) { return {on.h, -on.s}; }
+  static OnCircle turned(OnCircle crossing) { return {crossing.h, -crossing.s}; }
   static double parameter(double cosine) {
     return cosine >= 0 ? half_angle(sine(cosine), cosine) : 1 + half_angle(-cosine, sine(cosine));
   }
 
   Obstacle sphere_, tube_;
-  Vec3 toward_, aside_;
+  Vec3 toward_, sideways_;
   double offset_ = 0, start_ = 0, end_ = 2;
   bool reaches_bottom_ = false;
 };
@@ -223,11 +224,11 @@ TubePathEnd follow_tube(const Obstacle& sphere, const Obstacle& tube, Vec3 p,
   const double touching = 1e-10 * unit;
   const TubePath path(sphere, tube, p);
   const auto free_distance = [&](double x) {
-    const Vec3 here = path.at(x);
+    const Vec3 position = path.point_at(x);
     double least = std::numeric_limits<double>::infinity();
     for (const Obstacle& obstacle : obstacles) {
       if (obstacle.kind == Obstacle::Kind::tube || obstacle == sphere) continue;
-      least = std::min(least, gap(obstacle, here));
+      least = std::min(least, gap(obstacle, position));
     }
     // A body that is touched at the start is being left: rounding may show a slightly closer
     // contact.
@@ -235,9 +236,9 @@ TubePathEnd follow_tube(const Obstacle& sphere, const Obstacle& tube, Vec3 p,
   };
   const auto met = first_contact(path.start(), path.end(), unit, free_distance,
                                  [&](double x, double length) { return path.advance(x, length); });
-  if (met) return {path.at(*met), false};
-  TubePathEnd end = {path.at(path.end()), path.reaches_bottom()};
-  if (!end.at_bottom) end.p.z = sphere.at.z;
+  if (met) return {path.point_at(*met), false};
+  TubePathEnd end = {path.point_at(path.end()), path.reaches_bottom()};
+  if (!end.at_bottom) end.p.z = sphere.anchor.z;
   return end;
 }
 

@@ -16,17 +16,17 @@ namespace jostle::inline engine {
 /// centre + radius (s sideways + h up), s = sqrt(1 - h^2), from h = start down to h = end >= 0,
 /// where a support is lost.
 struct RollingArc {
-  Vec3 centre, sideways, up;  // sideways is horizontal, up has z > 0; unit vectors
+  Vec3 centre, sideways, upward;  // sideways is horizontal, up has z > 0; unit vectors
   double radius = 1;
   double start = 1, end = 0;
 
-  Vec3 at(double s, double h) const { return centre + radius * (s * sideways + h * up); }
+  Vec3 point_at(double s, double h) const { return centre + radius * (s * sideways + h * upward); }
 };
 
 /// The arc on one sphere from p, which touches it from above and not exactly on its top.
 RollingArc arc_on(const Obstacle& sphere, Vec3 p);
 /// The arc on two spheres, of the same size or not.
-RollingArc arc_on(const Obstacle& sphere, const Obstacle& other, Vec3 p);
+RollingArc arc_on(const Obstacle& sphere, const Obstacle& second, Vec3 p);
 /// The arc on a sphere along a flat wall.
 RollingArc arc_along_wall(const Obstacle& sphere, const Obstacle& wall, Vec3 p);
 
@@ -46,24 +46,24 @@ TubePathEnd follow_tube(const Obstacle& sphere, const Obstacle& tube, Vec3 p,
                         std::span<const Obstacle> obstacles, double unit);
 
 /// First parameter in [from, to] beyond which `gap` is negative; nothing if it never is. `advance`
-/// gives a later parameter (at most `to`) reached by at most the given length of path, so that no
+/// gives a later parameter (at most `end`) reached by at most the given length of path, so that no
 /// contact is stepped over but for grazes a billionth of a `unit` deep.
 template <class Gap, class Advance>
-std::optional<double> first_contact(double from, double to, double unit, Gap&& gap,
+std::optional<double> first_contact(double begin, double end, double unit, Gap&& gap,
                                     Advance&& advance) {
   const double least_step = 1e-4 * unit;
   constexpr int bisections = 60;
-  double here = from;
-  while (here < to) {
-    double next = advance(here, std::max(gap(here), least_step));
+  double position = begin;
+  while (position < end) {
+    double next = advance(position, std::max(gap(position), least_step));
     if (gap(next) < 0) {
       for (int i = 0; i < bisections; ++i) {
-        const double middle = 0.5 * (here + next);
-        (gap(middle) < 0 ? next : here) = middle;
+        const double middle = 0.5 * (position + next);
+        (gap(middle) < 0 ? next : position) = middle;
       }
-      return here;
+      return position;
     }
-    here = next;
+    position = next;
   }
   return std::nullopt;
 }

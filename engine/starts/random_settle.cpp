@@ -24,8 +24,9 @@ class PlacedSpheres {
     return std::ranges::none_of(classes_, [&](const SizeClass& c) {
       const double reach = radius + c.largest_radius + 1e-9;
       return c.cells.any_near(r, reach, [&](std::uint32_t place, Vec3) {
-        const std::uint32_t other = c.spheres[place];
-        return overlaps(boundary_, r, packing_.centres[other], radius + packing_.radius(other));
+        const std::uint32_t neighbour = c.spheres[place];
+        return overlaps(boundary_, r, packing_.centres[neighbour],
+                        radius + packing_.radius(neighbour));
       });
     });
   }

@@ -47,8 +47,8 @@ struct Builder {
 
 struct MixtureFault {
   using Fault = std::optional<std::string>;
-  static Fault equal(const char* what) {
-    return std::string(what) +
+  static Fault equal(const char* feature) {
+    return std::string(feature) +
            " requires equal spheres of diameter 1: start a mixture with a steepest-descent pour, "
            "random_settle or grow, or from a file that holds its packing";
   }
@@ -160,20 +160,20 @@ std::vector<std::uint32_t> pour_sequence(const StartSpheres& spheres, RandomStre
     if (!has_place[sphere]) sequence.push_back(sphere);
   }
   if (!spheres.sizes) return sequence;
-  const std::span others(sequence.begin() + first_free, sequence.end());
+  const std::span free_spheres(sequence.begin() + first_free, sequence.end());
   const auto radius = [&](std::uint32_t sphere) { return spheres.sizes->radius(sphere); };
   switch (spheres.order) {
     case PourOrder::random:  // Fisher & Yates
-      for (std::size_t left = others.size(); left > 1; --left)
-        std::swap(others[left - 1], others[random.below(left)]);
+      for (std::size_t left = free_spheres.size(); left > 1; --left)
+        std::swap(free_spheres[left - 1], free_spheres[random.integer_below(left)]);
       break;
     case PourOrder::as_listed:
       break;
     case PourOrder::large_first:
-      std::ranges::stable_sort(others, std::greater{}, radius);
+      std::ranges::stable_sort(free_spheres, std::greater{}, radius);
       break;
     case PourOrder::small_first:
-      std::ranges::stable_sort(others, std::less{}, radius);
+      std::ranges::stable_sort(free_spheres, std::less{}, radius);
       break;
   }
   return sequence;

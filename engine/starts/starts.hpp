@@ -23,7 +23,7 @@ namespace jostle::inline engine {
 struct SteepestDescentPour {
   bool operator==(const SteepestDescentPour&) const = default;
 
-  static constexpr About about{"steepest_descent"};
+  static constexpr Description description{"steepest_descent"};
   static constexpr auto fields() { return std::tuple{}; }
 };
 
@@ -36,7 +36,7 @@ struct SteepestDescentPour {
 struct FittedPour {
   bool operator==(const FittedPour&) const = default;
 
-  static constexpr About about{"fitted"};
+  static constexpr Description description{"fitted"};
   static constexpr auto fields() { return std::tuple{}; }
 };
 
@@ -52,15 +52,15 @@ struct RandomSettle {
   double drop_height = 0;        // drop height of the column's foot above the floor, diameters
   bool operator==(const RandomSettle&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "random_settle", "Random positions in a tall dilute box, then a relaxation without a tap",
       "Random settle"};
   static constexpr auto fields() {
     return std::tuple{
-        field("dilute_fraction", &RandomSettle::dilute_fraction, Number{above(0, densest_dilution)},
-              "Packing fraction of the dilute box"),
+        field("dilute_fraction", &RandomSettle::dilute_fraction,
+              Number{left_open_range(0, densest_dilution)}, "Packing fraction of the dilute box"),
         field("drop_height", &RandomSettle::drop_height,
-              Number{between(0, highest_drop), "diameters"},
+              Number{closed_range(0, highest_drop), "diameters"},
               "Height of the dilute box's foot above the floor", {.unless_default = true})};
   }
 };
@@ -81,7 +81,7 @@ struct Crystal {
   bool stretch = false;
   bool operator==(const Crystal&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "crystal",
       "A close-packed crystal, filled layer by layer from the floor; between walls and in a "
       "cylinder without the sites that do not fit",
@@ -105,7 +105,7 @@ struct Grow {
   std::uint64_t max_sweeps = 1'000'000;
   bool operator==(const Grow&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "grow", "Random points that grow to spheres; fully_periodic containers only", "Grow"};
   static constexpr auto fields() {
     return std::tuple{field("max_sweeps", &Grow::max_sweeps, Whole{1, most_growth_sweeps})};

@@ -58,8 +58,8 @@ double shortfall_limit(const Pilot& pilot, double least_error) {
   };
   const double last = std::abs(pilot.last_step.bias) + doubt(pilot.last_step);
   if (!is_seen(pilot.last_step)) return last;
-  const double before = std::abs(pilot.step_before.bias) - doubt(pilot.step_before);
-  const double rest = rest_of_steps(last, before);
+  const double previous = std::abs(pilot.step_before.bias) - doubt(pilot.step_before);
+  const double rest = rest_of_steps(last, previous);
   return rest < last ? last : rest;
 }
 
@@ -67,17 +67,17 @@ double shortfall_limit(const Pilot& pilot, double least_error) {
 
 PairedBias paired_bias(std::span<const double> values, std::span<const double> reference) {
   assert(values.size() == reference.size());
-  Moments difference, own, others;
+  Moments difference, own, other_moments;
   for (std::size_t r = 0; r < values.size(); ++r) {
     if (std::isnan(values[r]) || std::isnan(reference[r])) continue;
     difference.add(values[r] - reference[r]);
     own.add(values[r]);
-    others.add(reference[r]);
+    other_moments.add(reference[r]);
   }
   return {.pairs = difference.count(),
           .bias = difference.mean(),
           .error = difference.standard_error(),
-          .variance_reduction = (variance(own) + variance(others)) / variance(difference)};
+          .variance_reduction = (variance(own) + variance(other_moments)) / variance(difference)};
 }
 
 Growth bias_growth(std::span<const double> values_before, std::span<const double> reference_before,
@@ -105,11 +105,11 @@ bool is_seen(const PairedBias& bias) {
   return p_value(bias.bias, {bias.error, static_cast<double>(bias.pairs) - 1}) < significance_level;
 }
 
-Remainder remainder(std::span<const double> two_before, std::span<const double> before,
+Remainder remainder(std::span<const double> two_before, std::span<const double> previous,
                     std::span<const double> last) {
   std::vector<double> steps, steps_before;  // from realizations that all three have
   for (std::size_t r = 0; r < last.size(); ++r) {
-    const double step = last[r] - before[r], step_before = before[r] - two_before[r];
+    const double step = last[r] - previous[r], step_before = previous[r] - two_before[r];
     if (std::isnan(step) || std::isnan(step_before)) continue;
     steps.push_back(step);
     steps_before.push_back(step_before);
@@ -119,9 +119,9 @@ Remainder remainder(std::span<const double> two_before, std::span<const double> 
                sum_before = std::accumulate(steps_before.begin(), steps_before.end(), 0.0);
   std::vector<double> left_out;
   for (std::size_t r = 0; r < n; ++r) {
-    const auto others = static_cast<double>(n - 1);
+    const auto n_others = static_cast<double>(n - 1);
     left_out.push_back(
-        rest_of_steps((sum - steps[r]) / others, (sum_before - steps_before[r]) / others));
+        rest_of_steps((sum - steps[r]) / n_others, (sum_before - steps_before[r]) / n_others));
   }
   const auto all = static_cast<double>(n);
   return {.realizations = n,
@@ -159,10 +159,10 @@ std::optional<Recommendation> cheapest(std::span<const SettingCost> settings, do
 void pool_sigma(std::span<SettingCost> settings, const Pilot& pilot) {
   double squares = 0, dof = 0;
   for (std::size_t i = 0; i < settings.size(); ++i) {
-    const SettingCost& one = settings[i];
-    if (!pilot.has_beds[i] || one.values < 2 || !std::isfinite(one.sigma)) continue;
-    squares += static_cast<double>(one.values - 1) * one.sigma * one.sigma;
-    dof += static_cast<double>(one.values - 1);
+    const SettingCost& setting = settings[i];
+    if (!pilot.has_beds[i] || setting.values < 2 || !std::isfinite(setting.sigma)) continue;
+    squares += static_cast<double>(setting.values - 1) * setting.sigma * setting.sigma;
+    dof += static_cast<double>(setting.values - 1);
   }
   const double pooled = std::sqrt(squares / dof);
   for (std::size_t i = 0; i < settings.size(); ++i)
@@ -170,30 +170,32 @@ void pool_sigma(std::span<SettingCost> settings, const Pilot& pilot) {
 }
 
 std::vector<SettingCost> at_limits(std::span<const SettingCost> settings, const Pilot& pilot) {
-  std::vector<std::uint64_t> others = pilot.has_beds;
-  others[pilot.reference] = 0;
-  const double least_error = root_mean_square(settings, others, &SettingCost::bias_error);
+  std::vector<std::uint64_t> other_beds = pilot.has_beds;
+  other_beds[pilot.reference] = 0;
+  const double least_error = root_mean_square(settings, other_beds, &SettingCost::bias_error);
   const double lacking = shortfall_limit(pilot, least_error);
   std::vector<SettingCost> limits(settings.begin(), settings.end());
   for (std::size_t i = 0; i < limits.size(); ++i) {
-    SettingCost& one = limits[i];
-    const double error = pilot.has_beds[i] ? std::max(one.bias_error, least_error) : one.bias_error;
-    one.bias = i == pilot.reference ? lacking
-                                    : std::abs(one.bias) + limit_of_t(one.pairs) * error + lacking;
-    one.bias_error = 0;
-    one.sigma *= sigma_limit(one.values);
+    SettingCost& setting = limits[i];
+    const double error =
+        pilot.has_beds[i] ? std::max(setting.bias_error, least_error) : setting.bias_error;
+    setting.bias = i == pilot.reference
+                       ? lacking
+                       : std::abs(setting.bias) + limit_of_t(setting.pairs) * error + lacking;
+    setting.bias_error = 0;
+    setting.sigma *= sigma_limit(setting.values);
   }
   return limits;
 }
 
 std::vector<std::uint64_t> pareto_front(std::span<const SettingCost> settings) {
   std::vector<std::uint64_t> front;
-  for (const SettingCost& one : settings) {
-    const bool beaten = std::ranges::any_of(settings, [&](const SettingCost& other) {
-      return largest_bias(other) < largest_bias(one) &&
-             other.realization_seconds < one.realization_seconds;
+  for (const SettingCost& setting : settings) {
+    const bool beaten = std::ranges::any_of(settings, [&](const SettingCost& rival) {
+      return largest_bias(rival) < largest_bias(setting) &&
+             rival.realization_seconds < setting.realization_seconds;
     });
-    front.push_back(!beaten && !std::isnan(largest_bias(one)));
+    front.push_back(!beaten && !std::isnan(largest_bias(setting)));
   }
   return front;
 }

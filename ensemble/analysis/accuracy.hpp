@@ -51,7 +51,7 @@ struct Remainder {
 /// From three settings, each more complete than the one before, one value a realization, NaN where
 /// it is missing: if steps between the means go on to shrink as the last two did, X_inf - X_last =
 /// d r / (1 - r) with d = X_last - X_before and r the ratio of the two steps.
-Remainder remainder(std::span<const double> two_before, std::span<const double> before,
+Remainder remainder(std::span<const double> two_before, std::span<const double> previous,
                     std::span<const double> last);
 
 /// A setting as a choice.

@@ -41,7 +41,7 @@ struct SteadySettings {
   std::optional<std::uint64_t> last = std::nullopt;
   bool operator==(const SteadySettings&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "steady", "Value, fluctuation and memory of the last taps, and whether they are steady"};
   static constexpr auto fields() {
     return std::tuple{last_taps<SteadySettings>(SteadyStateTest::fewest_taps,
@@ -63,7 +63,8 @@ struct SpectrumSettings {
   std::optional<Band> band = std::nullopt;
   bool operator==(const SpectrumSettings&) const = default;
 
-  static constexpr About about{"spectrum", "Power spectrum of the last taps and its log-log slope"};
+  static constexpr Description description{"spectrum",
+                                           "Power spectrum of the last taps and its log-log slope"};
   static constexpr auto fields() {
     return std::tuple{
         last_taps<SpectrumSettings>(fewest_spectrum_taps, "Taps at the end; absent: half of all"),
@@ -83,7 +84,7 @@ struct AgeingSettings {
   std::vector<std::uint64_t> waiting_times, lags;  // ascending; lags at least 1
   bool operator==(const AgeingSettings&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "ageing", "A(t, t_W), V and C with errors, fits of eq. 6, what lays ages on one curve"};
   static constexpr auto fields() {
     return std::tuple{field("waiting_times", &AgeingSettings::waiting_times, TapNumbers{},
@@ -98,7 +99,7 @@ struct HysteresisSettings {
   std::optional<std::uint64_t> last = std::nullopt;  // absent: a quarter of the shortest stage
   bool operator==(const HysteresisSettings&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "hysteresis", "Steady value of every stage of the protocol, branches, areas of loops"};
   static constexpr auto fields() {
     return std::tuple{last_taps<HysteresisSettings>(
@@ -115,12 +116,13 @@ struct OrderingSettings {
       std::nullopt;  // number of last taps; absent: the last quarter
   bool operator==(const OrderingSettings&) const = default;
 
-  static constexpr About about{"ordering",
-                               "Time to order, its distribution over realizations, growth; over a "
-                               "sweep which point orders first, and which ends highest"};
+  static constexpr Description description{
+      "ordering",
+      "Time to order, its distribution over realizations, growth; over a "
+      "sweep which point orders first, and which ends highest"};
   static constexpr auto fields() {
     return std::tuple{
-        field("threshold", &OrderingSettings::threshold, Number{between(-1e9, 1e9)},
+        field("threshold", &OrderingSettings::threshold, Number{closed_range(-1e9, 1e9)},
               "The value from which a packing counts as ordered, in units of the observable",
               {.required = "the value of the observable at which a packing counts as ordered"}),
         field("hold", &OrderingSettings::hold, Whole{1, most_taps},
@@ -144,9 +146,10 @@ struct SweepSettings {
   std::optional<double> reference = std::nullopt;
   bool operator==(const SweepSettings&) const = default;
 
-  static constexpr About about{"sweep",
-                               "A quantity against the swept value, its extrema, its straight "
-                               "line, differences between its points"};
+  static constexpr Description description{
+      "sweep",
+      "A quantity against the swept value, its extrema, its straight "
+      "line, differences between its points"};
   static constexpr auto fields() {
     return std::tuple{
         field("quantity", &SweepSettings::quantity, Text{},
@@ -155,7 +158,7 @@ struct SweepSettings {
               {.examples = R"(["value", "steady/sigma", "kww/rho_inf"])"}),
         last_taps<SweepSettings>(1, "Taps at the end; absent: a quarter of all"),
         drawn_against<SweepSettings>(),
-        field("reference", &SweepSettings::reference, Number{between(-1e9, 1e9)},
+        field("reference", &SweepSettings::reference, Number{closed_range(-1e9, 1e9)},
               "Point on the axis as drawn that all others are compared with; absent: neighbours")};
   }
 };
@@ -168,14 +171,14 @@ struct VolumesSettings {
   std::optional<double> spheres = std::nullopt;
   bool operator==(const VolumesSettings&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "volumes", "Variance of steady states over strengths, compactivity by two estimators"};
   static constexpr auto fields() {
     return std::tuple{last_taps<VolumesSettings>(
                           SteadyStateTest::fewest_taps,
                           "Taps at the end; absent: a quarter of all, or of the shortest stage"),
                       drawn_against<VolumesSettings>(),
-                      field("spheres", &VolumesSettings::spheres, Number{above(0, 1e9)},
+                      field("spheres", &VolumesSettings::spheres, Number{left_open_range(0, 1e9)},
                             "Whose volume it is; absent: those of the observable's window")};
   }
 };
@@ -185,7 +188,7 @@ struct MemorySettings {
   std::vector<std::uint64_t> lags;  // last ones of windows, ascending, at least 1; empty: all
   bool operator==(const MemorySettings&) const = default;
 
-  static constexpr About about{
+  static constexpr Description description{
       "memory",
       "A test of whether the evolution after a common value depends on how it was reached: "
       "the last stage is common to the sweep points"};

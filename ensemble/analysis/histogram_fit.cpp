@@ -35,8 +35,8 @@ Groups groups_of(const Histogram& histogram, const std::vector<double>& expected
       groups.counts.resize(groups.counts.size() + m, 0.0);
     }
     groups.expected.back() += m * expected[k];
-    double* const into = groups.counts.data() + groups.counts.size() - m;
-    for (std::uint32_t r = 0; r < m; ++r) into[r] += histogram.counts[k * m + r];
+    double* const target = groups.counts.data() + groups.counts.size() - m;
+    for (std::uint32_t r = 0; r < m; ++r) target[r] += histogram.counts[k * m + r];
     open = groups.expected.back() < least_expected;
   }
   if (groups.expected.size() > 1 && groups.expected.back() < least_expected) {
@@ -66,23 +66,23 @@ Goodness goodness(const Histogram& histogram, const std::vector<double>& expecte
     for (std::uint32_t r = 0; r < m; ++r) totals[r] += groups.counts[g * m + r];
   }
   for (const double total : totals) all += total;
-  double between = 0, within = 0;
+  double between_groups = 0, within_groups = 0;
   for (std::size_t g = 0; g < n; ++g) {
     const double* const counts = groups.counts.data() + g * m;
     double sum = 0;
     for (std::uint32_t r = 0; r < m; ++r) sum += counts[r];
-    between += (sum - groups.expected[g]) * (sum - groups.expected[g]) / groups.expected[g];
+    between_groups += (sum - groups.expected[g]) * (sum - groups.expected[g]) / groups.expected[g];
     // Shares: the total count of a realization is independent of the law.
     for (std::uint32_t r = 0; r < m; ++r) {
-      const double share = totals[r] / all, off = counts[r] - share * sum;
-      within += off * off / (groups.expected[g] * share);
+      const double share = totals[r] / all, deviation = counts[r] - share * sum;
+      within_groups += deviation * deviation / (groups.expected[g] * share);
     }
   }
   const auto dof = static_cast<double>(n - n_parameters);
-  if (m < 2) return {chi_squared_tail(between, dof), n};
-  const double others = static_cast<double>(n - 1) * (m - 1);
-  const double scatter = std::max(within / others, least_scatter);
-  return {fisher_tail(between / dof / scatter, dof, others), n};
+  if (m < 2) return {chi_squared_tail(between_groups, dof), n};
+  const double dof_within = static_cast<double>(n - 1) * (m - 1);
+  const double scatter = std::max(within_groups / dof_within, least_scatter);
+  return {fisher_tail(between_groups / dof / scatter, dof, dof_within), n};
 }
 
 std::string verdict(const Goodness& found, std::uint32_t realizations) {
@@ -109,13 +109,13 @@ void add_errors(const Model& law, const Histogram& histogram, HistogramFit& foun
   const std::uint32_t m = histogram.realizations;
   std::vector<std::vector<double>> left_out(found.values.size());
   for (std::uint32_t r = 0; r < m; ++r) {
-    const CountsFit without =
+    const CountsFit reduced_fit =
         fit_counts(law, histogram.bins, mean_counts(histogram, r), found.values);
-    if (!without.fault.empty()) {
-      found.status += "; no errors: without one of the realizations " + without.fault;
+    if (!reduced_fit.fault.empty()) {
+      found.status += "; no errors: without one of the realizations " + reduced_fit.fault;
       return;
     }
-    for (std::size_t j = 0; j < left_out.size(); ++j) left_out[j].push_back(without.values[j]);
+    for (std::size_t j = 0; j < left_out.size(); ++j) left_out[j].push_back(reduced_fit.values[j]);
   }
   for (std::size_t j = 0; j < left_out.size(); ++j) found.errors[j] = jackknife_error(left_out[j]);
 }

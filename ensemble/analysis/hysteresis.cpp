@@ -21,11 +21,11 @@ void add_integral(std::span<const double> strengths, std::vector<std::size_t> st
   if (strengths[steps.front()] > strengths[steps.back()]) std::ranges::reverse(steps);
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
     const double left = strengths[steps[i]], right = strengths[steps[i + 1]];
-    const double from = std::max(left, low), to = std::min(right, high);
-    if (!(from < to)) continue;
-    const double share = (0.5 * (from + to) - left) / (right - left);
-    weights[steps[i]] += factor * (to - from) * (1 - share);
-    weights[steps[i + 1]] += factor * (to - from) * share;
+    const double begin = std::max(left, low), end = std::min(right, high);
+    if (!(begin < end)) continue;
+    const double share = (0.5 * (begin + end) - left) / (right - left);
+    weights[steps[i]] += factor * (end - begin) * (1 - share);
+    weights[steps[i + 1]] += factor * (end - begin) * share;
   }
 }
 
@@ -181,9 +181,9 @@ std::vector<Loop> loops(std::span<const double> strengths, std::span<const doubl
   for (std::size_t i = 0; i < found.size(); ++i) {
     Loop& loop = found[i];
     loop.corrected = p[i];
-    const double one = Loop::level / static_cast<double>(found.size());
+    const double level = Loop::level / static_cast<double>(found.size());
     loop.detectable = loop.error.known()
-                          ? loop.error.error * smallest_effect_found(one, loop.error.dof)
+                          ? loop.error.error * smallest_effect_found(level, loop.error.dof)
                           : std::numeric_limits<double>::infinity();
   }
   return found;

@@ -34,7 +34,7 @@ PackingNumber number_in(const EnsembleStructure& structure, std::size_t part,
     auto& row = number.values.emplace_back();
     for (const auto& parts : realizations) {
       const MeasuredQuantity* const quantity = found(parts, part, example.name);
-      row.push_back(quantity != nullptr ? quantity->at(0) : not_a_number);
+      row.push_back(quantity != nullptr ? quantity->value_at(0) : not_a_number);
     }
   }
   return number;
@@ -55,8 +55,8 @@ std::optional<std::uint64_t> last_common_tap(std::span<const ComparedPoint> poin
 /// Values over realizations at a tap; null where the point does not have the number.
 const std::vector<double>* values_at(const ComparedPoint& point, const PackingNumber& example,
                                      std::uint64_t tap) {
-  const auto number = std::ranges::find_if(point.numbers, [&](const PackingNumber& one) {
-    return one.part == example.part && one.name == example.name;
+  const auto number = std::ranges::find_if(point.numbers, [&](const PackingNumber& packing_number) {
+    return packing_number.part == example.part && packing_number.name == example.name;
   });
   if (number == point.numbers.end()) return nullptr;
   const auto place = std::ranges::lower_bound(point.taps, tap) - point.taps.begin();
@@ -66,7 +66,7 @@ const std::vector<double>* values_at(const ComparedPoint& point, const PackingNu
 /// ComparisonLines of a table of differences.
 struct ComparisonLines {
   std::vector<std::uint64_t> line, from_point, to_point;
-  std::vector<std::string> quantity, units, from, to;
+  std::vector<std::string> quantity, units, start, end;
   std::vector<double> from_value, to_value, value, error, dof, p, corrected;
 };
 
@@ -82,25 +82,25 @@ void add_lines(std::span<const ComparedPoint> points, const PackingNumber& numbe
   }
   const SweepCurve curve(places, values, streams);
   if (curve.n_points() < 2) return;
-  const ComparedPairs which = points.size() <= most_compared_pairwise ? ComparedPairs::all_pairs
+  const ComparedPairs pairs = points.size() <= most_compared_pairwise ? ComparedPairs::all_pairs
                                                                       : ComparedPairs::with_first;
-  for (const SweepDifference& one : differences(curve, which)) {
-    const auto& first = points[static_cast<std::size_t>(curve.x()[one.from])];
-    const auto& second = points[static_cast<std::size_t>(curve.x()[one.to])];
+  for (const SweepDifference& difference : differences(curve, pairs)) {
+    const auto& first = points[static_cast<std::size_t>(curve.x()[difference.start])];
+    const auto& second = points[static_cast<std::size_t>(curve.x()[difference.end])];
     lines.line.push_back(lines.line.size());
     lines.quantity.push_back(number.name);
     lines.units.push_back(number.units);
-    lines.from.push_back(first.label);
-    lines.to.push_back(second.label);
+    lines.start.push_back(first.label);
+    lines.end.push_back(second.label);
     lines.from_point.push_back(first.point);
     lines.to_point.push_back(second.point);
-    lines.from_value.push_back(curve.y()[one.from]);
-    lines.to_value.push_back(curve.y()[one.to]);
-    lines.value.push_back(one.value);
-    lines.error.push_back(error_or_nan(one.error));
-    lines.dof.push_back(one.error.known() ? one.error.dof : 0);
-    lines.p.push_back(one.p);
-    lines.corrected.push_back(one.corrected);
+    lines.from_value.push_back(curve.y()[difference.start]);
+    lines.to_value.push_back(curve.y()[difference.end]);
+    lines.value.push_back(difference.value);
+    lines.error.push_back(error_or_nan(difference.error));
+    lines.dof.push_back(difference.error.known() ? difference.error.dof : 0);
+    lines.p.push_back(difference.p);
+    lines.corrected.push_back(difference.corrected);
   }
 }
 
@@ -123,8 +123,8 @@ Table table_of(const std::string& part, std::uint64_t tap, std::size_t n_points,
   };
   add("quantity", std::move(lines.quantity), "number of a packing");
   add("units", std::move(lines.units), "units of its means, difference and error");
-  add("from", std::move(lines.from), "sweep point that the difference is taken from");
-  add("to", std::move(lines.to), "sweep point whose mean it is taken to");
+  add("from", std::move(lines.start), "sweep point that the difference is taken from");
+  add("to", std::move(lines.end), "sweep point whose mean it is taken to");
   add("from_mean", std::move(lines.from_value), "mean over the realizations of `from`");
   add("to_mean", std::move(lines.to_value), "mean over the realizations of `to`");
   add("difference", std::move(lines.value), "mean at `to` less that at `from`");
@@ -149,8 +149,8 @@ ComparedPoint packing_numbers(std::string label, std::uint32_t point,
     for (const auto& parts : realizations) {
       for (std::size_t part = 0; part < parts.size(); ++part) {
         for (const MeasuredQuantity& quantity : parts[part].quantities) {
-          const bool is_known = std::ranges::any_of(all.numbers, [&](const PackingNumber& one) {
-            return one.part == parts[part].part && one.name == quantity.name;
+          const bool is_known = std::ranges::any_of(all.numbers, [&](const PackingNumber& number) {
+            return number.part == parts[part].part && number.name == quantity.name;
           });
           if (is_number(quantity) && !is_known) {
             all.numbers.push_back(number_in(structure, part, parts[part].part, quantity));
@@ -170,8 +170,8 @@ std::vector<Table> comparison_tables(std::span<const ComparedPoint> points, Stre
   std::vector<const PackingNumber*> numbers;  // each once, in the order of the parts
   for (const ComparedPoint& point : points) {
     for (const PackingNumber& number : point.numbers) {
-      const bool is_known = std::ranges::any_of(numbers, [&](const PackingNumber* one) {
-        return one->part == number.part && one->name == number.name;
+      const bool is_known = std::ranges::any_of(numbers, [&](const PackingNumber* known) {
+        return known->part == number.part && known->name == number.name;
       });
       if (!is_known) numbers.push_back(&number);
     }

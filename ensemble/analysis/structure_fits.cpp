@@ -74,8 +74,8 @@ FoundLaw fitted_curve(const std::string& quantity, const Model& model, const Pac
     const auto t = variable(all.places[k]);
     if (!t) continue;
     curves.t.push_back(*t);
-    for (const MeasuredQuantity* one : all.quantities) {
-      curves.values.push_back(one->at(k));
+    for (const MeasuredQuantity* measured_quantity : all.quantities) {
+      curves.values.push_back(measured_quantity->value_at(k));
     }
   }
   const std::size_t n = model.parameters().size();
@@ -122,7 +122,7 @@ FoundLaw fitted_counts(const std::string& quantity, const Model& model, const Pa
     if (!place) continue;
     histogram.bins.push_back(*place);
     for (std::size_t r = 0; r < all.quantities.size(); ++r) {
-      histogram.counts.push_back(all.quantities[r]->at(k) * number(*all.packings[r]));
+      histogram.counts.push_back(all.quantities[r]->value_at(k) * number(*all.packings[r]));
     }
   }
   return {fit_histogram(model, histogram), histogram.realizations};
@@ -208,7 +208,7 @@ std::optional<Bin> whole_number(double place) {
 // Where there is no number to count by there is nothing to fit.
 double single(const Measurement& measurement, std::string_view name) {
   const MeasuredQuantity* quantity = measurement.find(name);
-  return quantity != nullptr ? quantity->at(0) : 0;
+  return quantity != nullptr ? quantity->value_at(0) : 0;
 }
 
 /// The normal law of whole numbers, of shares of what `counted` counts.
@@ -271,11 +271,11 @@ FittedLaw pore_tail(const PoresSettings& settings) {
           "tail",
           "pore_tail",
           {"1", "sphere volumes"},
-          [from = settings.tail_from, width = settings.bin_width](const Model& model,
-                                                                  const Packings& packings) {
-            const auto bin = [from, width](double xi) -> std::optional<Bin> {
+          [tail_start = settings.tail_from, width = settings.bin_width](const Model& model,
+                                                                        const Packings& packings) {
+            const auto bin = [tail_start, width](double xi) -> std::optional<Bin> {
               const double low = xi - 0.5 * width, high = xi + 0.5 * width;
-              if (xi * xi * xi < from) return std::nullopt;
+              if (xi * xi * xi < tail_start) return std::nullopt;
               return Bin{low * low * low, high * high * high};
             };
             return fitted_counts("rho_xi", model, packings, bin,
@@ -287,8 +287,8 @@ FittedLaw pore_tail(const PoresSettings& settings) {
 /// The least free volume of a cell, from which the k-gamma law counts, is that of equal spheres.
 bool is_of_mixtures(const PartPackings& part) {
   return std::ranges::any_of(part, [](const auto& realizations) {
-    return std::ranges::any_of(realizations, [](const Measurement* one) {
-      return one != nullptr && one->find("cells_of_kind") != nullptr;
+    return std::ranges::any_of(realizations, [](const Measurement* measurement) {
+      return measurement != nullptr && measurement->find("cells_of_kind") != nullptr;
     });
   });
 }

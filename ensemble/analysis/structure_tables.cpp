@@ -42,7 +42,7 @@ double degrees_of_freedom(std::size_t n_packings) {
 /// Resampling Plans, sec. 3), [n_taps, n_places].
 MeansAndErrors pooled(const PartPackings& part, const MeasuredQuantity& example,
                       std::size_t n_places) {
-  MeansAndErrors out;
+  MeansAndErrors means;
   for (const auto& realizations : part) {
     for (std::size_t place = 0; place < n_places; ++place) {
       double top = 0, bottom = 0;
@@ -53,7 +53,7 @@ MeansAndErrors pooled(const PartPackings& part, const MeasuredQuantity& example,
         const bool weighted = example.pooling == Pooling::weighted;
         const double weight = weighted ? quantity->weight_at(place) : 1;
         if (weight == 0 || std::isnan(weight)) continue;
-        terms.emplace_back(quantity->at(place) * weight, weight);
+        terms.emplace_back(quantity->value_at(place) * weight, weight);
         top += terms.back().first;
         bottom += terms.back().second;
       }
@@ -61,37 +61,37 @@ MeansAndErrors pooled(const PartPackings& part, const MeasuredQuantity& example,
       for (const auto& [value, weight] : terms) {
         left_out.push_back((top - value) / (bottom - weight));
       }
-      out.means.push_back(example.pooling == Pooling::sum ? top : top / bottom);
-      out.errors.push_back(jackknife_error(left_out));
-      out.dof.push_back(degrees_of_freedom(left_out.size()));
+      means.means.push_back(example.pooling == Pooling::sum ? top : top / bottom);
+      means.errors.push_back(jackknife_error(left_out));
+      means.dof.push_back(degrees_of_freedom(left_out.size()));
     }
   }
-  return out;
+  return means;
 }
 
 /// Over realizations, [n_taps, n_places]; of the changes since the first tap where `change`.
 MeansAndErrors averages(const PartPackings& part, std::string_view name, std::size_t n_places,
                         bool change) {
-  MeansAndErrors out;
+  MeansAndErrors means;
   for (const auto& realizations : part) {
     for (std::size_t place = 0; place < n_places; ++place) {
       Moments moments;
       for (std::size_t r = 0; r < realizations.size(); ++r) {
         const auto* quantity = realizations[r] ? realizations[r]->find(name) : nullptr;
         if (quantity == nullptr) continue;
-        double value = quantity->at(place);
+        double value = quantity->value_at(place);
         if (change) {
           const auto* start = part[0][r] ? part[0][r]->find(name) : nullptr;
-          value -= start != nullptr ? start->at(place) : not_a_number;
+          value -= start != nullptr ? start->value_at(place) : not_a_number;
         }
         moments.add(value);
       }
-      out.means.push_back(moments.mean());
-      out.errors.push_back(moments.standard_error());
-      out.dof.push_back(degrees_of_freedom(moments.count()));
+      means.means.push_back(moments.mean());
+      means.errors.push_back(moments.standard_error());
+      means.dof.push_back(degrees_of_freedom(moments.count()));
     }
   }
-  return out;
+  return means;
 }
 
 /// `since`: the tap that changes are counted from; absent: the values themselves.
@@ -124,9 +124,9 @@ void add_packings_with_value(const PartPackings& part, const MeasuredQuantity& q
   for (const auto& realizations : part) {
     for (std::size_t place = 0; place < n_places; ++place) {
       counts.push_back(static_cast<std::uint64_t>(
-          std::ranges::count_if(realizations, [&](const Measurement* one) {
-            const auto* found = one != nullptr ? one->find(quantity.name) : nullptr;
-            return found != nullptr && !std::isnan(found->at(place));
+          std::ranges::count_if(realizations, [&](const Measurement* measurement) {
+            const auto* found = measurement != nullptr ? measurement->find(quantity.name) : nullptr;
+            return found != nullptr && !std::isnan(found->value_at(place));
           })));
     }
   }
@@ -147,8 +147,8 @@ void note_few_pairs(const PartPackings& part, const std::vector<std::uint64_t>& 
     for (const Measurement* packing : part[tap]) {
       const MeasuredQuantity* g = packing != nullptr ? packing->find("g") : nullptr;
       if (g == nullptr) continue;
-      centres += packing->find("centres")->at(0);
-      packings += packing->find("packings")->at(0);
+      centres += packing->find("centres")->value_at(0);
+      packings += packing->find("packings")->value_at(0);
       const auto beyond = g->weights.size() / 2;
       bins = static_cast<double>(g->weights.size() - beyond);
       for (std::size_t k = beyond; k < g->weights.size(); ++k) expected += g->weights[k];
@@ -180,7 +180,7 @@ Quantity number_of_packings(const PartPackings& part) {
 void add_notes(const Measurement& measurement, Table& table) {
   for (const auto& note : measurement.notes) {
     const bool known = std::ranges::any_of(
-        table.notes, [&](const auto& other) { return other.first == note.first; });
+        table.notes, [&](const auto& entry) { return entry.first == note.first; });
     if (!known) table.notes.push_back(note);
   }
 }
@@ -193,7 +193,7 @@ std::vector<const MeasuredQuantity*> quantities_of(const PartPackings& part) {
       if (measurement == nullptr) continue;
       for (const MeasuredQuantity& quantity : measurement->quantities) {
         const bool known = std::ranges::any_of(
-            all, [&](const auto* other) { return other->name == quantity.name; });
+            all, [&](const auto* entry) { return entry->name == quantity.name; });
         if (!known) all.push_back(&quantity);
       }
     }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t n_directions = 3;
 
-std::array<double, n_directions> along(Vec3 d) {
+std::array<double, n_directions> components(Vec3 d) {
   return {d.x, d.y, d.z};
 }
 
@@ -35,21 +35,21 @@ struct Sums {
     const double lateral = d[0] * d[0] + d[1] * d[1];
     lateral_quartic += lateral * lateral;
     for (std::size_t a = 0; a < lengths.size(); ++a) {
-      const double within = lengths[a] * lengths[a];
-      lateral_overlap[a] += lateral < within ? 1 : 0;
-      overlap[a] += lateral + d[2] * d[2] < within ? 1 : 0;
+      const double square = lengths[a] * lengths[a];
+      lateral_overlap[a] += lateral < square ? 1 : 0;
+      overlap[a] += lateral + d[2] * d[2] < square ? 1 : 0;
     }
   }
-  Sums& operator+=(const Sums& other) {
-    n += other.n;
-    lateral_quartic += other.lateral_quartic;
+  Sums& operator+=(const Sums& rhs) {
+    n += rhs.n;
+    lateral_quartic += rhs.lateral_quartic;
     for (std::size_t k = 0; k < n_directions; ++k) {
-      steps[k] += other.steps[k];
-      squares[k] += other.squares[k];
+      steps[k] += rhs.steps[k];
+      squares[k] += rhs.squares[k];
     }
     for (std::size_t a = 0; a < overlap.size(); ++a) {
-      lateral_overlap[a] += other.lateral_overlap[a];
-      overlap[a] += other.overlap[a];
+      lateral_overlap[a] += rhs.lateral_overlap[a];
+      overlap[a] += rhs.overlap[a];
     }
     return *this;
   }
@@ -91,7 +91,7 @@ void append_kinds(const MotionSettings& settings, std::span<const Vec3> referenc
   assert(kinds.size() == now.size());
   std::vector<Sums> of_kinds(settings.kinds, Sums(0));
   for (std::size_t i = 0; i < now.size(); ++i)
-    of_kinds[kinds[i]].add(along(now[i] - reference[i]), {});
+    of_kinds[kinds[i]].add(components(now[i] - reference[i]), {});
   for (const Sums& kind : of_kinds) append(values, kind.steps, kind.n);
   for (const Sums& kind : of_kinds) append(values, kind.squares, kind.n);
 }
@@ -120,7 +120,7 @@ std::size_t n_places(MotionPlaces places, const MotionSettings& settings) {
 
 std::size_t n_motion_values(const MotionSettings& settings) {
   std::size_t n = 0;
-  for (const MotionQuantity& one : motion_quantities) n += n_places(one.places, settings);
+  for (const MotionQuantity& quantity : motion_quantities) n += n_places(quantity.places, settings);
   return n;
 }
 
@@ -175,7 +175,7 @@ std::vector<double> motion_values(const MotionSettings& settings, std::span<cons
   Sums bed(lengths.size());
   std::vector<Sums> of_layers(settings.layers, Sums(lengths.size()));
   for (std::size_t i = 0; i < now.size(); ++i) {
-    of_layers[layers[i]].add(along(now[i] - reference[i]), lengths);
+    of_layers[layers[i]].add(components(now[i] - reference[i]), lengths);
   }
   for (const Sums& layer : of_layers) bed += layer;
   for (std::size_t i = 0; i < now.size(); ++i) {

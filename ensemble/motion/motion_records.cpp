@@ -14,9 +14,9 @@ MotionRecords::MotionRecords(const MotionSettings& followed, std::uint32_t spher
                              std::uint32_t realizations)
     : settings(followed), n_spheres(spheres), n_realizations(realizations) {
   const std::size_t n_origins = settings.origins.size();
-  for (const MotionQuantity& one : motion_quantities)
+  for (const MotionQuantity& quantity : motion_quantities)
     values.emplace_back(
-        n_origins * settings.lags.size() * n_places(one.places, settings) * n_realizations,
+        n_origins * settings.lags.size() * n_places(quantity.places, settings) * n_realizations,
         not_a_number);
   layer_height.resize(n_origins * settings.layers * n_realizations, not_a_number);
   largest_step.resize(n_realizations, not_a_number);
@@ -31,12 +31,12 @@ void MotionRecords::add(std::uint32_t realization, const MotionState& state,
     const MotionOrigin& origin = state.origins[o];
     const std::size_t n_lags = std::min(origin.values.size() / n_values, settings.lags.size());
     for (std::size_t l = 0; l < n_lags; ++l) {
-      std::size_t at = l * n_values;
+      std::size_t index = l * n_values;
       for (std::size_t q = 0; q < values.size(); ++q) {
         const std::size_t n = n_places(motion_quantities[q].places, settings);
         for (std::size_t place = 0; place < n; ++place)
           values[q][((o * settings.lags.size() + l) * n + place) * n_realizations + realization] =
-              origin.values[at++];
+              origin.values[index++];
       }
     }
     std::vector<double> sums(settings.layers), counts(settings.layers);

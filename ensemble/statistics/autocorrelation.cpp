@@ -137,8 +137,8 @@ AutocorrelationTime Autocorrelation::about_means(const Sum& sum) const {
     (expected(middle).time < sum.time ? low : high) = middle;
   }
   AutocorrelationTime result{.time = 0.5 * (low + high), .window = sum.last};
-  const ExpectedSum found = expected(result.time), more = expected(1.01 * result.time);
-  const double gain = (more.time - found.time) / (0.01 * result.time);
+  const ExpectedSum found = expected(result.time), larger = expected(1.01 * result.time);
+  const double gain = (larger.time - found.time) / (0.01 * result.time);
   if (!(gain > 0)) return lower_bound(sum);
   // Means take a part of the sum's scatter with them: about as much of its square as of its gain.
   const double scatter = wolff_error(result.time, sum.last, realizations_ * n_);
@@ -146,7 +146,7 @@ AutocorrelationTime Autocorrelation::about_means(const Sum& sum) const {
   if (length < fewest_times * (result.time + scatter / gain)) return lower_bound(sum);
   result.variance = covariance(0) / found.variance;
   result.variance_error = result.variance * result.error *
-                          std::abs(more.variance / found.variance - 1) / (0.01 * result.time);
+                          std::abs(larger.variance / found.variance - 1) / (0.01 * result.time);
   for (std::size_t t = 1; t <= sum.last; ++t) {
     const double correlation = covariance(t) / result.variance + found.lowered[t];
     result.squares += correlation * correlation;

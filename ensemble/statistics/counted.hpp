@@ -7,9 +7,9 @@
 namespace jostle::inline ensemble {
 
 /// A count with what it counts: "1 sphere", "2 spheres".
-inline std::string counted(std::uint64_t n, std::string_view one) {
+inline std::string counted(std::uint64_t n, std::string_view singular) {
   std::string text = std::to_string(n);
-  text.append(" ").append(one);
+  text.append(" ").append(singular);
   if (n != 1) text += 's';
   return text;
 }

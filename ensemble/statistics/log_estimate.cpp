@@ -40,13 +40,15 @@ bool is_limited(const LogEstimate& estimate) {
 std::vector<double> ln_means_without_one(std::span<const double> values) {
   const std::size_t n = values.size();
   if (n < 2) return {};
-  std::vector<double> before = {0}, after = {0}, logarithms;  // sums of the first, of the last
+  std::vector<double> first_sums = {0}, last_sums = {0},
+                      logarithms;  // sums of the first, of the last
   for (std::size_t i = 0; i < n; ++i) {
-    before.push_back(before.back() + values[i]);
-    after.push_back(after.back() + values[n - 1 - i]);
+    first_sums.push_back(first_sums.back() + values[i]);
+    last_sums.push_back(last_sums.back() + values[n - 1 - i]);
   }
   for (std::size_t i = 0; i < n; ++i) {
-    logarithms.push_back(std::log((before[i] + after[n - 1 - i]) / static_cast<double>(n - 1)));
+    logarithms.push_back(
+        std::log((first_sums[i] + last_sums[n - 1 - i]) / static_cast<double>(n - 1)));
   }
   return logarithms;
 }

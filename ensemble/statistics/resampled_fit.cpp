@@ -24,7 +24,7 @@ std::vector<double> multiplicities(const RealizationCurves& curves, std::uint32_
   std::vector<double> weights(curves.realizations, 0.0);
   RandomStream random(stream_key(options.seed, 0, index, Purpose::resampling));
   for (std::uint32_t i = 0; i < curves.realizations; ++i) {
-    weights[random.below(curves.realizations)] += 1;
+    weights[random.integer_below(curves.realizations)] += 1;
   }
   return weights;
 }
@@ -72,9 +72,9 @@ double standard_deviation(const std::vector<double>& values, double divisor) {
 // Linear between order statistics.
 double quantile(const std::vector<double>& sorted, double share) {
   const double rank = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(rank);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (rank - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+  const auto lower = static_cast<std::size_t>(rank);
+  const std::size_t upper = std::min(lower + 1, sorted.size() - 1);
+  return sorted[lower] + (rank - static_cast<double>(lower)) * (sorted[upper] - sorted[lower]);
 }
 
 Interval central_interval(const std::vector<double>& sorted, double level) {

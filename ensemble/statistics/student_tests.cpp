@@ -14,17 +14,17 @@ namespace jostle::inline ensemble {
 namespace {
 
 // Beyond, Student's t is a normal variable to all digits that count.
-constexpr double many = 1e7;
+constexpr double large_dof = 1e7;
 
 double tails(double t, double dof) {
-  return dof < many ? student_tails(t, dof) : normal_tails(t);
+  return dof < large_dof ? student_tails(t, dof) : normal_tails(t);
 }
 
 // Simpson's rule over the square root of the variable, in which powers at 0 are smooth.
 template <class Function>
-double integral(double from, double to, int n_intervals, const Function& f) {
-  if (!(from < to)) return 0;
-  const double first = std::sqrt(from), step = (std::sqrt(to) - first) / n_intervals;
+double integral(double lower, double upper, int n_intervals, const Function& f) {
+  if (!(lower < upper)) return 0;
+  const double first = std::sqrt(lower), step = (std::sqrt(upper) - first) / n_intervals;
   double sum = 0;
   for (int i = 0; i <= n_intervals; ++i) {
     const double root = first + i * step;
@@ -40,7 +40,7 @@ double normal_below(double z) {
 
 // For |N(effect, 1)| > critical s, where s^2 is chi squared over its dof degrees of freedom.
 double power_at(double effect, double critical, double dof) {
-  if (dof >= many) return normal_below(effect - critical) + normal_below(-effect - critical);
+  if (dof >= large_dof) return normal_below(effect - critical) + normal_below(-effect - critical);
   const double half = 0.5 * dof;
   const double norm = std::log(2.0) + half * std::log(half) - log_gamma(half);
   const auto density = [&](double s) {
@@ -118,19 +118,19 @@ double smallest_effect_found(double level, double dof, double power) {
 TestedEnds tested_ends(const std::vector<double>& values, double best, double dof,
                        const std::function<double(double value)>& t_of) {
   TestedEnds ends{{-infinite, -infinite}, {infinite, infinite}};
-  for (const bool up : {false, true}) {
+  for (const bool is_upper : {false, true}) {
     double inside = best, t_inside = 0;
     std::size_t found = 0;  // levels
     const std::size_t n = values.size();
     for (std::size_t i = 0; i < n && found < 2; ++i) {
-      const double value = up ? values[i] : values[n - 1 - i];
-      if (up ? value <= best : value >= best) continue;
+      const double value = is_upper ? values[i] : values[n - 1 - i];
+      if (is_upper ? value <= best : value >= best) continue;
       const double t = std::abs(t_of(value));
       for (; found < 2; ++found) {
         const double threshold = student_two_sided(interval_levels[found], dof);
         if (!(t > threshold)) break;
         const double share = std::max(0.0, (threshold - t_inside) / (t - t_inside));
-        (up ? ends.high : ends.low)[found] = std::lerp(inside, value, share);
+        (is_upper ? ends.high : ends.low)[found] = std::lerp(inside, value, share);
       }
       inside = value;
       t_inside = t;

@@ -57,9 +57,9 @@ void TrendTest::add(std::span<const double> series) {
     // 1, 2, 3, 4, 6, 8, 12, ... taps
     for (std::size_t length = 1; fewest_blocks_of_series * length <= n_; length *= 2) {
       levels_.push_back({length, n_ / length, 0});
-      const std::size_t between = length / 2 * 3;
-      if (length >= 2 && fewest_blocks_of_series * between <= n_)
-        levels_.push_back({between, n_ / between, 0});
+      const std::size_t n_between = length / 2 * 3;
+      if (length >= 2 && fewest_blocks_of_series * n_between <= n_)
+        levels_.push_back({n_between, n_ / n_between, 0});
     }
   }
   ++n_series_;
@@ -106,9 +106,10 @@ ErrorOf TrendTest::slope_within(const AutocorrelationTime& memory) const {
 }
 
 // Realizations whose slopes differ by more than each should change have a memory beyond the blocks.
-bool is_doubted(const ErrorOf& within, const ErrorOf& over) {
-  if (!within.known() || !over.known() || within.error == 0) return false;
-  return fisher_tail(std::pow(over.error / within.error, 2), over.dof, within.dof) < doubted;
+bool is_doubted(const ErrorOf& series_error, const ErrorOf& scatter_error) {
+  if (!series_error.known() || !scatter_error.known() || series_error.error == 0) return false;
+  return fisher_tail(std::pow(scatter_error.error / series_error.error, 2), scatter_error.dof,
+                     series_error.dof) < doubted;
 }
 
 Trend TrendTest::result() const {
@@ -117,16 +118,17 @@ Trend TrendTest::result() const {
   trend.line.value = slopes_.mean() * n;
   trend.halves.value = halves_.mean();
   if (n_series_ > 1) {
-    trend.line.over = {slopes_.standard_error() * n, n_series - 1};
-    trend.halves.over = {halves_.standard_error(), n_series - 1};
+    trend.line.scatter_error = {slopes_.standard_error() * n, n_series - 1};
+    trend.halves.scatter_error = {halves_.standard_error(), n_series - 1};
   }
   trend.memory = about_lines_.result();
   trend.sigma = std::sqrt(trend.memory.variance);
-  trend.line.within = slope_within(trend.memory);
-  trend.line.within.error *= n;
-  if (is_doubted(trend.line.within, trend.line.over)) trend.line.within = {};
+  trend.line.series_error = slope_within(trend.memory);
+  trend.line.series_error.error *= n;
+  if (is_doubted(trend.line.series_error, trend.line.scatter_error)) trend.line.series_error = {};
   // With a spectrum that is flat at low frequencies, variances of 12 and 4 times that of the mean.
-  trend.halves.within = {trend.line.within.error / std::sqrt(3.0), trend.line.within.dof};
+  trend.halves.series_error = {trend.line.series_error.error / std::sqrt(3.0),
+                               trend.line.series_error.dof};
   const double variance = variance_ / n_series;
   if (variance > 0) {
     trend.share =
@@ -136,10 +138,10 @@ Trend TrendTest::result() const {
     const Change& change;
     const ErrorOf& error;
     const char* name;
-  } tests[] = {{trend.line, trend.line.over, "slope over realizations"},
-               {trend.line, trend.line.within, "slope within series"},
-               {trend.halves, trend.halves.over, "halves over realizations"},
-               {trend.halves, trend.halves.within, "halves within series"}};
+  } tests[] = {{trend.line, trend.line.scatter_error, "slope over realizations"},
+               {trend.line, trend.line.series_error, "slope within series"},
+               {trend.halves, trend.halves.scatter_error, "halves over realizations"},
+               {trend.halves, trend.halves.series_error, "halves within series"}};
   double smallest = 2;
   for (const auto& test : tests) {
     if (!test.error.known()) continue;
@@ -152,7 +154,7 @@ Trend TrendTest::result() const {
   }
   if (trend.tests > 0) trend.p = std::min(1.0, smallest * static_cast<double>(trend.tests));
   trend.detectable = std::numeric_limits<double>::infinity();
-  for (const ErrorOf& error : {trend.line.over, trend.line.within}) {
+  for (const ErrorOf& error : {trend.line.scatter_error, trend.line.series_error}) {
     if (!error.known()) continue;
     const double level = Trend::level / static_cast<double>(trend.tests);
     trend.detectable =
@@ -170,7 +172,7 @@ std::string Trend::statement() const {
   if (!drifts()) return fmt::format("no drift found ({})", test);
   return finite_text(
       "it drifts{}: {:+.2g}{} over the taps by its line, halves differ by {:+.2g}{} ({})",
-      line.over.known() ? "" : ", or remembers for longer than these taps", line.value,
+      line.scatter_error.known() ? "" : ", or remembers for longer than these taps", line.value,
       unit_behind(units), halves.value, unit_behind(units), test);
 }
 

@@ -16,12 +16,13 @@ namespace jostle::inline ensemble {
 /// A mean over realizations that is 0 in a steady state, with two independent errors.
 struct Change {
   double value = 0;
-  ErrorOf over;    // from the scatter over realizations; none of one
-  ErrorOf within;  // from the memory of each series about its own line; none where blocks of five
-                   // autocorrelation times are fewer than four a series, nor where realizations
-                   // differ by more (F-test at 25 %): their memory is then longer than the blocks
+  ErrorOf scatter_error;  // from the scatter over realizations; none of one
+  ErrorOf
+      series_error;  // from the memory of each series about its own line; none where blocks of five
+                     // autocorrelation times are fewer than four a series, nor where realizations
+                     // differ by more (F-test at 25 %): their memory is then longer than the blocks
   /// Over realizations where that is known, else within.
-  const ErrorOf& error() const { return over.known() ? over : within; }
+  const ErrorOf& error() const { return scatter_error.known() ? scatter_error : series_error; }
 };
 
 /// Tests if the last taps drift: Student's tests of the slope of a straight line and of the

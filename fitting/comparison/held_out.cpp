@@ -64,12 +64,12 @@ Ensemble ensemble_of(const Curve& whole) {
 
 // The mean of all realizations but one, with the weights of the whole curve. Made from the mean of
 // all, it keeps the digits of small fluctuations.
-Curve without(const Ensemble& ensemble, Eigen::Index left_out) {
+Curve curve_without(const Ensemble& ensemble, Eigen::Index left_out) {
   Curve rest{.t = ensemble.curve.t, .x = ensemble.curve.x, .sigma = ensemble.curve.sigma};
-  const auto others = static_cast<double>(ensemble.n_realizations() - 1);
+  const auto n_others = static_cast<double>(ensemble.n_realizations() - 1);
   for (std::size_t i = 0; i < rest.x.size(); ++i) {
     const auto point = static_cast<Eigen::Index>(i);
-    rest.x[i] -= ensemble.deviations(point, left_out) / ensemble.root_weight[point] / others;
+    rest.x[i] -= ensemble.deviations(point, left_out) / ensemble.root_weight[point] / n_others;
   }
   return rest;
 }
@@ -135,12 +135,12 @@ Predictions predictions(const Ensemble& ensemble, const FittedLaw& law, std::str
   found.held_out.resize(ensemble.n_points(), ensemble.n_realizations());
   FitOptions options = refit_options(fitted);
   for (Eigen::Index m = 0; m < ensemble.n_realizations(); ++m) {
-    const Curve others = without(ensemble, m);
+    const Curve training = curve_without(ensemble, m);
     options.multi_start = false;
-    auto result = fit(fitted.model, others, options);
+    auto result = fit(fitted.model, training, options);
     if (std::holds_alternative<Refusal>(result)) {
       options.multi_start = true;
-      result = fit(fitted.model, others, options);
+      result = fit(fitted.model, training, options);
     }
     if (const auto* refusal = std::get_if<Refusal>(&result)) {
       std::ostringstream text;
@@ -168,11 +168,11 @@ double squared_error(const Ensemble& ensemble, const Predictions& law) {
 
 // The variance of the difference of squared errors of two laws, to second order in the deviations.
 double variance_of_difference(const Ensemble& ensemble, const Predictions& law,
-                              const Predictions& other) {
+                              const Predictions& second) {
   const auto m = static_cast<double>(ensemble.n_realizations());
-  const Eigen::ArrayXd apart = law.fitted - other.fitted;
-  const Eigen::VectorXd first = 2 * ensemble.deviations.matrix().transpose() * apart.matrix();
-  const Eigen::ArrayXXd change = law.held_out - other.held_out;
+  const Eigen::ArrayXd difference = law.fitted - second.fitted;
+  const Eigen::VectorXd first = 2 * ensemble.deviations.matrix().transpose() * difference.matrix();
+  const Eigen::ArrayXXd change = law.held_out - second.held_out;
   const Eigen::MatrixXd moved =
       ((m - 1) * (change.colwise() - change.rowwise().mean().eval())).matrix();
   const double kernel =
@@ -180,10 +180,10 @@ double variance_of_difference(const Ensemble& ensemble, const Predictions& law,
   return (first.squaredNorm() / (m - 1) + 2 * kernel / (m - 1)) / m;
 }
 
-bool coincide(const Ensemble& ensemble, const Predictions& law, const Predictions& other) {
-  const double noise = std::min(law.residual_sum, other.residual_sum);
+bool coincide(const Ensemble& ensemble, const Predictions& law, const Predictions& second) {
+  const double noise = std::min(law.residual_sum, second.residual_sum);
   const double digits = rounding * ensemble.mean.square().sum();
-  return (law.fitted - other.fitted).square().sum() <= std::max(same_curve * noise, digits);
+  return (law.fitted - second.fitted).square().sum() <= std::max(same_curve * noise, digits);
 }
 
 HeldOutLaw compared(const Ensemble& ensemble, const Predictions& law, const Predictions& best,

@@ -149,15 +149,16 @@ double noise_memory(const Curve& curve) {
   double products = 0, squares = 0, pairs = 0;
   for (std::size_t r = 0; r < m; ++r) {
     const auto noise = [&](std::size_t i) {
-      double others = -1;
-      for (std::size_t other = 0; other < m; ++other) others += curve.present[i * m + other];
-      return (curve.values[i * m + r] - curve.x[i] - curve.offsets[r]) * others;
+      double n_others = -1;
+      for (std::size_t realization = 0; realization < m; ++realization)
+        n_others += curve.present[i * m + realization];
+      return (curve.values[i * m + r] - curve.x[i] - curve.offsets[r]) * n_others;
     };
     for (std::size_t i = 1; i < n; ++i) {
       if (curve.present[(i - 1) * m + r] == 0 || curve.present[i * m + r] == 0) continue;
-      const double before = noise(i - 1), now = noise(i);
-      products += before * now;
-      squares += (before * before + now * now) / 2;
+      const double previous = noise(i - 1), now = noise(i);
+      products += previous * now;
+      squares += (previous * previous + now * now) / 2;
       ++pairs;
     }
   }
@@ -211,8 +212,8 @@ double gapped_dof(const Eigen::MatrixXd& jacobian, const Curve& curve) {
     if (!(all > 0) || !(of_noise > 0)) continue;
     const double share = std::min(1.0, of_offsets / all);
     double squares = 0;
-    for (const double one : noise) {
-      squares += std::pow(share / count + (1 - share) * one / of_noise, 2);
+    for (const double value : noise) {
+      squares += std::pow(share / count + (1 - share) * value / of_noise, 2);
     }
     least = std::min(least, (count - 1) / count / squares);
   }

@@ -24,20 +24,21 @@ struct Rewritten {
 
 // Parameter `index` of the other model with its error, and its intervals where they are profiled.
 // Errors rest on what those of the fit do.
-Estimate estimate_in(const Rewritten& other, std::size_t index, const FittedCurveOf& fitted,
+Estimate estimate_in(const Rewritten& rewritten, std::size_t index, const FittedCurveOf& fitted,
                      const Fit& fit) {
   Fit counts = fit;
-  const LinearProblem linear = linear_problem(other.model, fitted.curve, other.values, other.free);
+  const LinearProblem linear =
+      linear_problem(rewritten.model, fitted.curve, rewritten.values, rewritten.free);
   Estimate estimate;
-  estimate.parameter = other.model.parameters()[index];
-  estimate.value = other.values[index];
+  estimate.parameter = rewritten.model.parameters()[index];
+  estimate.value = rewritten.values[index];
   estimate.error = estimate.standard_error = infinite;
   for (Interval& interval : estimate.intervals) interval = {-infinite, infinite};
   if (!linear.jacobian.allFinite()) return estimate;
   const DependentErrors errors =
       dependent_errors(fitted.curve, linear, fitted.options.memory, counts);
-  const auto variable =
-      std::count(other.free.begin(), other.free.begin() + static_cast<std::ptrdiff_t>(index), true);
+  const auto variable = std::count(
+      rewritten.free.begin(), rewritten.free.begin() + static_cast<std::ptrdiff_t>(index), true);
   const double slope = std::abs(linear.slopes[variable]);
   const double variance = fit.sigma_given ? 1 : fit.reduced_chi2;
   estimate.error = std::sqrt(errors.covariance(variable, variable)) * slope;
@@ -57,10 +58,10 @@ Estimate estimate_in(const Rewritten& other, std::size_t index, const FittedCurv
     }
     return estimate;
   }
-  const ProfileProblem problem{other.model,
+  const ProfileProblem problem{rewritten.model,
                                fitted.searched,
-                               other.values,
-                               other.free,
+                               rewritten.values,
+                               rewritten.free,
                                fitted.cost,
                                variance,
                                {thresholds[0], thresholds[1]},
@@ -87,11 +88,11 @@ bool inside(const Model& model, const ParameterValues& p) {
 
 // The free parameters of the equivalent law; none of them where a parameter is fixed that it
 // does not have.
-std::vector<bool> free_of(const Equivalent& other, const std::vector<bool>& free) {
-  std::vector<bool> theirs(other.equal.size(), true);
+std::vector<bool> free_of(const Equivalent& equivalent, const std::vector<bool>& free) {
+  std::vector<bool> theirs(equivalent.equal.size(), true);
   std::size_t kept = 0;
   for (std::size_t j = 0; j < theirs.size(); ++j) {
-    if (!other.equal[j] || free[*other.equal[j]]) continue;
+    if (!equivalent.equal[j] || free[*equivalent.equal[j]]) continue;
     theirs[j] = false;
     ++kept;
   }
@@ -107,12 +108,12 @@ void add_combinations(const FittedCurveOf& fitted, Fit& fit) {
     return fitted.free[j] && fit.estimates[j].identifiability > Identifiability::wide;
   };
   for (const Combination& combination : fitted.model.combinations()) {
-    if (!loose(combination.kept) || !loose(combination.other)) continue;
+    if (!loose(combination.kept) || !loose(combination.partner)) continue;
     const CombinedModel model(fitted.model, combination);
-    const Rewritten other{model, model.combined(fitted.values), fitted.free};
-    const double value = other.values[combination.kept];
+    const Rewritten rewritten{model, model.combined(fitted.values), fitted.free};
+    const double value = rewritten.values[combination.kept];
     if (!(value > 0) || !std::isfinite(value)) continue;
-    Estimate estimate = estimate_in(other, combination.kept, fitted, fit);
+    Estimate estimate = estimate_in(rewritten, combination.kept, fitted, fit);
     if (estimate.intervals[1].closed()) fit.combinations.push_back(std::move(estimate));
   }
   take_errors_of_intervals(fit, fit.combinations);
@@ -122,17 +123,19 @@ void add_combinations(const FittedCurveOf& fitted, Fit& fit) {
 void add_restated(const FittedCurveOf& fitted, Fit& fit) {
   const auto equivalent = fitted.model.equivalent();
   if (!equivalent || !equivalent->law->refusal(fitted.curve).empty()) return;
-  const Rewritten other{*equivalent->law, equivalent->restate(fitted.values),
-                        free_of(*equivalent, fitted.free)};
+  const Rewritten rewritten{*equivalent->law, equivalent->restate(fitted.values),
+                            free_of(*equivalent, fitted.free)};
   const ParameterValues values = equivalent->restate(fit.values());
-  if (other.free.empty() || !inside(other.model, other.values) || !inside(other.model, values)) {
+  if (rewritten.free.empty() || !inside(rewritten.model, rewritten.values) ||
+      !inside(rewritten.model, values)) {
     return;
   }
-  RestatedFit restated{other.model.name(), other.model.formula(), other.model.source(), {}};
-  for (std::size_t j = 0; j < other.values.size(); ++j) {
-    const auto same = equivalent->equal[j];
-    Estimate estimate = same ? fit.estimates[*same] : estimate_in(other, j, fitted, fit);
-    estimate.parameter = other.model.parameters()[j];
+  RestatedFit restated{
+      rewritten.model.name(), rewritten.model.formula(), rewritten.model.source(), {}};
+  for (std::size_t j = 0; j < rewritten.values.size(); ++j) {
+    const auto equal = equivalent->equal[j];
+    Estimate estimate = equal ? fit.estimates[*equal] : estimate_in(rewritten, j, fitted, fit);
+    estimate.parameter = rewritten.model.parameters()[j];
     estimate.value = values[j];
     restated.estimates.push_back(std::move(estimate));
   }

@@ -8,19 +8,19 @@
 namespace jostle::inline fitting {
 
 RunsTest runs_test(const std::vector<double>& residuals) {
-  double above = 0, below = 0;
+  double n_positive = 0, n_negative = 0;
   int last = 0;
   RunsTest test;
   for (double r : residuals) {
     const int sign = (r > 0) - (r < 0);
     if (sign == 0) continue;
-    (sign > 0 ? above : below) += 1;
+    (sign > 0 ? n_positive : n_negative) += 1;
     if (sign != last) ++test.runs;
     last = sign;
   }
-  const double n = above + below;
-  test.expected = n > 0 ? 1 + 2 * above * below / n : 0;
-  if (above == 0 || below == 0 || n < 3) return test;
+  const double n = n_positive + n_negative;
+  test.expected = n > 0 ? 1 + 2 * n_positive * n_negative / n : 0;
+  if (n_positive == 0 || n_negative == 0 || n < 3) return test;
   const double variance = (test.expected - 1) * (test.expected - 2) / (n - 1);
   if (!(variance > 0)) return test;
   test.z = (static_cast<double>(test.runs) - test.expected) / std::sqrt(variance);

@@ -87,16 +87,16 @@ Eigen::MatrixXd curvature_along(const CurveResiduals& residuals, const Eigen::Ve
     residuals.values_and_jacobian(u, r, jacobian);
     return jacobian.transpose() * missed;
   };
-  Eigen::MatrixXd along(directions.cols(), directions.cols());
+  Eigen::MatrixXd hessian(directions.cols(), directions.cols());
   for (Eigen::Index k = 0; k < directions.cols(); ++k) {
     const Eigen::VectorXd direction = directions.col(k);
     const double share = (direction.array().abs() / room).maxCoeff();
     const double length = std::min(step, 1 / std::max(share, 1e-300));
     const Eigen::VectorXd change = length * direction;
-    along.col(k) = directions.transpose() *
-                   (gradient(minimum + change) - gradient(minimum - change)) / (2 * length);
+    hessian.col(k) = directions.transpose() *
+                     (gradient(minimum + change) - gradient(minimum - change)) / (2 * length);
   }
-  return 0.5 * (along + along.transpose());
+  return 0.5 * (hessian + hessian.transpose());
 }
 
 }  // namespace
@@ -118,8 +118,9 @@ LinearProblem linear_problem(const Model& model, const Curve& curve, const Param
   // Each parameter takes two Jacobians, and so many parameters are rare.
   constexpr Eigen::Index most_variables = 8;
   if (residuals.n_variables() <= most_variables) {
-    problem.curvature = [=, &model, &curve, missed = problem.residuals](const Eigen::MatrixXd& to) {
-      return curvature_along(CurveResiduals(model, curve, values, free), u, missed, to);
+    problem.curvature = [=, &model, &curve,
+                         missed = problem.residuals](const Eigen::MatrixXd& directions) {
+      return curvature_along(CurveResiduals(model, curve, values, free), u, missed, directions);
     };
   }
   return problem;

@@ -56,30 +56,31 @@ HeldFits::HeldFits(const ProfileProblem& problem, std::size_t index, double dire
   free_[index] = false;
 }
 
-// Along the line from the minimum through `from`, in variables.
-ParameterValues HeldFits::line(double distance, const HeldFit& from) const {
-  ParameterValues p = from.p;
-  for (std::size_t j = 0; j < p.size() && from.distance > 0; ++j) {
+// Along the line from the minimum through `start_fit`, in variables.
+ParameterValues HeldFits::line(double distance, const HeldFit& start_fit) const {
+  ParameterValues p = start_fit.p;
+  for (std::size_t j = 0; j < p.size() && start_fit.distance > 0; ++j) {
     if (!free_[j]) continue;
     const Transform transform(problem_.model.parameters()[j]);
     const double start = transform.to_variable(problem_.minimum[j]);
-    const double rate = (transform.to_variable(from.p[j]) - start) / from.distance;
-    const double there = transform.to_parameter(start + rate * distance);
+    const double rate = (transform.to_variable(start_fit.p[j]) - start) / start_fit.distance;
+    const double extrapolated = transform.to_parameter(start + rate * distance);
     // Far out the line means nothing.
-    if (distance < 3 * from.distance && std::isfinite(there)) p[j] = there;
+    if (distance < 3 * start_fit.distance && std::isfinite(extrapolated)) p[j] = extrapolated;
   }
   return p;
 }
 
-ParameterValues HeldFits::between(double distance, const HeldFit& low, const HeldFit& high) const {
+ParameterValues HeldFits::interpolated(double distance, const HeldFit& low,
+                                       const HeldFit& high) const {
   ParameterValues p = low.p;
   const double share = (distance - low.distance) / (high.distance - low.distance);
   for (std::size_t j = 0; j < p.size(); ++j) {
     const Transform transform(problem_.model.parameters()[j]);
     const double start = transform.to_variable(low.p[j]);
-    const double there =
+    const double extrapolated =
         transform.to_parameter(start + share * (transform.to_variable(high.p[j]) - start));
-    if (free_[j] && std::isfinite(there)) p[j] = there;
+    if (free_[j] && std::isfinite(extrapolated)) p[j] = extrapolated;
   }
   return p;
 }
@@ -174,10 +175,11 @@ bool HeldFits::has_digits(const ParameterValues& p) const {
 }
 
 // Takes over what is lower, or as low and settled.
-bool HeldFits::improve(HeldFit& point, const HeldFit& other) const {
-  const bool lower = other.z < point.z - noticeable_;
-  const bool as_low = other.z <= point.z + 0.01 * noticeable_ && other.settled && !point.settled;
-  if (lower || as_low || (other.z < point.z && other.settled)) point = other;
+bool HeldFits::improve(HeldFit& point, const HeldFit& candidate) const {
+  const bool lower = candidate.z < point.z - noticeable_;
+  const bool as_low =
+      candidate.z <= point.z + 0.01 * noticeable_ && candidate.settled && !point.settled;
+  if (lower || as_low || (candidate.z < point.z && candidate.settled)) point = candidate;
   return lower;
 }
 
@@ -203,29 +205,30 @@ void HeldFits::search(HeldFit& fit) {
         share * static_cast<double>(evaluations_of_starts(problem_.model, sample, fixed)));
   }
   for (ParameterValues& start : problem_.model.starts(sample, fixed, 8)) {
-    const HeldFit other = descend(fit.distance, std::move(start));
-    agreeing = other.z < fit.z - noticeable_ ? 0 : agreeing + (other.z < fit.z + noticeable_);
-    improve(fit, other);
+    const HeldFit candidate = descend(fit.distance, std::move(start));
+    agreeing =
+        candidate.z < fit.z - noticeable_ ? 0 : agreeing + (candidate.z < fit.z + noticeable_);
+    improve(fit, candidate);
     if (agreeing == 1) break;
   }
 }
 
 // A fit from the neighbour nearer to the minimum. z is continuous: one that does not settle, or
 // jumps, has lost its way, and is sought from elsewhere.
-HeldFit HeldFits::at(double distance, const HeldFit& from, const HeldFit* beyond) {
-  const double allowed =
-      beyond ? std::max(beyond->z, from.z) + noticeable_ : from.z + 0.75 * problem_.thresholds[1];
-  HeldFit point =
-      descend(distance, beyond ? between(distance, from, *beyond) : line(distance, from));
+HeldFit HeldFits::fit_at(double distance, const HeldFit& start_fit, const HeldFit* beyond) {
+  const double allowed = beyond ? std::max(beyond->z, start_fit.z) + noticeable_
+                                : start_fit.z + 0.75 * problem_.thresholds[1];
+  HeldFit point = descend(
+      distance, beyond ? interpolated(distance, start_fit, *beyond) : line(distance, start_fit));
   if (beyond) {
     // The one beyond may be on another branch of z, which is the higher one here.
-    const double share = (distance - from.distance) / (beyond->distance - from.distance);
-    const double bend = (point.z - from.z) - (share + 0.1) * (beyond->z - from.z);
-    if (bend > 0) improve(point, beside(distance, from));
+    const double share = (distance - start_fit.distance) / (beyond->distance - start_fit.distance);
+    const double bend = (point.z - start_fit.z) - (share + 0.1) * (beyond->z - start_fit.z);
+    if (bend > 0) improve(point, fit_beside(distance, start_fit));
   }
   const auto astray = [&] { return !better_ && (!point.settled || point.z > allowed); };
-  if (astray()) improve(point, descend(distance, solved(distance, from.p)));
-  if (astray()) improve(point, descend(distance, from.p));
+  if (astray()) improve(point, descend(distance, solved(distance, start_fit.p)));
+  if (astray()) improve(point, descend(distance, start_fit.p));
   if (astray() && beyond) improve(point, descend(distance, solved(distance, beyond->p)));
   if (astray()) search(point);
   return point;

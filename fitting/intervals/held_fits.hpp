@@ -46,15 +46,15 @@ class HeldFits {
 
   /// The fit at `distance`, sought from its neighbour nearer to the minimum (and from one `beyond`)
   /// and, where it does not settle or z jumps, from elsewhere.
-  HeldFit at(double distance, const HeldFit& from, const HeldFit* beyond = nullptr);
+  HeldFit fit_at(double distance, const HeldFit& start_fit, const HeldFit* beyond = nullptr);
   /// From the nonlinear parameters of a neighbour.
-  HeldFit beside(double distance, const HeldFit& neighbour) {
+  HeldFit fit_beside(double distance, const HeldFit& neighbour) {
     return descend(distance, solved(distance, neighbour.p));
   }
   /// Improves a fit from the model's own starts with this parameter held.
   void search(HeldFit& fit);
   /// Takes over what is lower, or as low and settled; true where it is lower by what matters.
-  bool improve(HeldFit& fit, const HeldFit& other) const;
+  bool improve(HeldFit& fit, const HeldFit& candidate) const;
 
   double parameter(double distance) const {
     return coordinate_.to_parameter(centre_ + direction_ * distance);
@@ -74,8 +74,8 @@ class HeldFits {
   HeldFit held(double distance, const ParameterValues& guess, const std::vector<bool>& free) const;
   HeldFit in_order(HeldFit fit) const;
   bool has_digits(const ParameterValues& p) const;
-  ParameterValues line(double distance, const HeldFit& from) const;
-  ParameterValues between(double distance, const HeldFit& low, const HeldFit& high) const;
+  ParameterValues line(double distance, const HeldFit& start_fit) const;
+  ParameterValues interpolated(double distance, const HeldFit& low, const HeldFit& high) const;
   ParameterValues solved(double distance, ParameterValues p) const;
 
   const ProfileProblem& problem_;

@@ -43,10 +43,10 @@ bool is_wide(const Estimate& estimate, const Curve& curve) {
 
 Identifiability verdict(const Estimate& estimate, const Curve& curve) {
   const Interval& interval = estimate.intervals[1];
-  const bool above = std::isfinite(interval.lower), below = std::isfinite(interval.upper);
-  if (!above && !below) return Identifiability::not_identifiable;
-  if (!below) return Identifiability::bounded_below;
-  if (!above) return Identifiability::bounded_above;
+  const bool has_lower = std::isfinite(interval.lower), has_upper = std::isfinite(interval.upper);
+  if (!has_lower && !has_upper) return Identifiability::not_identifiable;
+  if (!has_upper) return Identifiability::bounded_below;
+  if (!has_lower) return Identifiability::bounded_above;
   return is_wide(estimate, curve) ? Identifiability::wide : Identifiability::identified;
 }
 

@@ -46,7 +46,7 @@ double Side::crossing(HeldFit low, HeldFit high, double threshold) {
     distance = low.distance - f_low * width / (f_high - f_low);
     distance = std::clamp(distance, low.distance + 1e-3 * width, high.distance - 1e-3 * width);
     if (width <= 1e-7 * high.distance) break;
-    const HeldFit point = fits_.at(distance, low, &high);
+    const HeldFit point = fits_.fit_at(distance, low, &high);
     const double f = point.z - threshold;
     if (fits_.better() || (point.settled && std::abs(f) <= 1e-6 * threshold)) return distance;
     if (f < 0) {
@@ -71,14 +71,14 @@ bool Side::is_flat_before(double distance, const std::vector<HeldFit>& points, d
   const bool logarithmic = fits_.coordinate().is_logarithmic();
   const double half = logarithmic ? distance - std::log(2.0) : 0.5 * distance;
   if (!(half > 0)) return false;
-  const auto after =
+  const auto next =
       std::ranges::find_if(points, [&](const HeldFit& point) { return point.distance >= half; });
-  if (after == points.begin() || after == points.end()) return false;
-  if (std::prev(after)->z < (1 - flat) * threshold && after->z < (1 - flat) * threshold) {
+  if (next == points.begin() || next == points.end()) return false;
+  if (std::prev(next)->z < (1 - flat) * threshold && next->z < (1 - flat) * threshold) {
     return false;
   }
-  const HeldFit before = *std::prev(after), beyond = *after;
-  const HeldFit point = fits_.at(half, before, &beyond);
+  const HeldFit previous = *std::prev(next), beyond = *next;
+  const HeldFit point = fits_.fit_at(half, previous, &beyond);
   return point.settled && point.z > (1 - flat) * threshold;
 }
 
@@ -104,12 +104,12 @@ double Side::reach(double& step) const {
 
 // Where a search met a lower branch of z, the points before it may belong to the higher one.
 void Side::revise(std::vector<HeldFit>& points, const HeldFit& found) {
-  const HeldFit* from = &found;
+  const HeldFit* source = &found;
   for (std::size_t i = points.size() - 1; i > 0 && !fits_.better(); --i) {
-    if (!fits_.improve(points[i], fits_.beside(points[i].distance, *from))) {
+    if (!fits_.improve(points[i], fits_.fit_beside(points[i].distance, *source))) {
       return;
     }
-    from = &points[i];
+    source = &points[i];
   }
 }
 
@@ -122,7 +122,7 @@ std::vector<HeldFit> Side::march(double step) {
   const EvaluationBudget* const budget = problem_.solver.budget;
   while (points.back().distance < end && !fits_.better() && !(budget && budget->spent())) {
     const HeldFit& last = points.back();
-    HeldFit next = fits_.at(std::min(last.distance + step, end), last);
+    HeldFit next = fits_.fit_at(std::min(last.distance + step, end), last);
     const bool outside = next.z >= last_threshold;
     // Too far to be a neighbour of the last: its fit may have gone astray.
     if ((next.z > last.z + 2 * last_threshold || (outside && !next.settled)) && retries < 20) {
@@ -150,11 +150,11 @@ void Side::find_ends(double step, double ends[2]) {
     const double threshold = problem_.thresholds[level];
     const auto inside = std::find_if(points.rbegin(), points.rend(),
                                      [&](const HeldFit& point) { return point.z < threshold; });
-    const auto above = std::find_if(inside.base(), points.end(),
-                                    [](const HeldFit& point) { return point.settled; });
+    const auto outside = std::find_if(inside.base(), points.end(),
+                                      [](const HeldFit& point) { return point.settled; });
     ends[level] = fits_.direction() * infinite;
-    if (above == points.end()) continue;
-    const double distance = crossing(*inside, *above, threshold);
+    if (outside == points.end()) continue;
+    const double distance = crossing(*inside, *outside, threshold);
     if (!std::isfinite(distance) || is_flat_before(distance, points, threshold)) continue;
     ends[level] = fits_.parameter(distance);
   }

@@ -31,11 +31,11 @@ bool realizations_differ_in_shape(const DependentErrors& errors, const Fit& fit)
   if (fit.n_realizations == 0 || !(dof > 0) || !std::isfinite(dof)) return false;
   const Eigen::MatrixXd& path = errors.independent;
   for (Eigen::Index held = 0; held < path.cols(); ++held) {
-    for (Eigen::Index other = 0; other < path.rows(); ++other) {
-      const double slope = path(other, held) / path(held, held);
+    for (Eigen::Index second = 0; second < path.rows(); ++second) {
+      const double slope = path(second, held) / path(held, held);
       const double ratio =
-          slope * slope * errors.covariance(held, held) / errors.covariance(other, other);
-      if (other != held && ratio > 1 && fisher_tail(ratio, dof, dof) < shape_level) return true;
+          slope * slope * errors.covariance(held, held) / errors.covariance(second, second);
+      if (second != held && ratio > 1 && fisher_tail(ratio, dof, dof) < shape_level) return true;
     }
   }
   return false;
@@ -52,9 +52,9 @@ void use_student_intervals(const Curve& curve, double error, double dof, Estimat
     distance = two_sided(interval_levels[level], dof) * error;
     student[level] = {-infinite, infinite};
     if (distance > reach) continue;
-    const double below = transform.to_parameter(middle - distance);
-    const double above = transform.to_parameter(middle + distance);
-    student[level] = {std::min(below, above), std::max(below, above)};
+    const double lower = transform.to_parameter(middle - distance);
+    const double upper = transform.to_parameter(middle + distance);
+    student[level] = {std::min(lower, upper), std::max(lower, upper)};
   }
   const auto agrees = [&](double profiled, double end) {
     const double difference = transform.to_variable(profiled) - transform.to_variable(end);

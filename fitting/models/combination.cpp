@@ -15,12 +15,12 @@ CombinedModel::CombinedModel(const Model& model, const Combination& combination)
 }
 
 ParameterValues CombinedModel::combined(ParameterValues p) const {
-  p[combination_.kept] *= std::pow(p[combination_.other], combination_.power);
+  p[combination_.kept] *= std::pow(p[combination_.partner], combination_.power);
   return p;
 }
 
 ParameterValues CombinedModel::separate(ParameterValues p) const {
-  p[combination_.kept] *= std::pow(p[combination_.other], -combination_.power);
+  p[combination_.kept] *= std::pow(p[combination_.partner], -combination_.power);
   return p;
 }
 
@@ -31,8 +31,8 @@ double CombinedModel::value(double t, const double* p) const {
 double CombinedModel::value_and_gradient(double t, const double* p, double* gradient) const {
   const ParameterValues q = separate({p, p + parameters_.size()});
   const double value = model_.value_and_gradient(t, q.data(), gradient);
-  const std::size_t kept = combination_.kept, other = combination_.other;
-  gradient[other] -= gradient[kept] * combination_.power * q[kept] / q[other];
+  const std::size_t kept = combination_.kept, partner = combination_.partner;
+  gradient[partner] -= gradient[kept] * combination_.power * q[kept] / q[partner];
   gradient[kept] *= q[kept] / p[kept];
   return value;
 }

@@ -18,10 +18,10 @@ enum class From { zero, above_zero };  // times at which a law has a value
 class LimitLaw final : public PublishedLaw {
  public:
   LimitLaw(std::string name, std::string formula, std::vector<Parameter> parameters, Terms terms,
-           From from = From::zero)
+           From domain = From::zero)
       : PublishedLaw(std::move(name), std::move(formula), "", std::move(parameters)),
         terms_(terms),
-        from_(from),
+        domain_(domain),
         n_linear_(static_cast<std::size_t>(
             std::count_if(this->parameters().begin(), this->parameters().end(),
                           [](const Parameter& p) { return p.linear; }))) {}
@@ -44,7 +44,7 @@ class LimitLaw final : public PublishedLaw {
   }
   std::string refusal(const Curve& curve) const override {
     const double first = *std::min_element(curve.t.begin(), curve.t.end());
-    return first > 0 || (first == 0 && from_ == From::zero) ? "" : "t must be positive";
+    return first > 0 || (first == 0 && domain_ == From::zero) ? "" : "t must be positive";
   }
   std::vector<std::vector<double>> candidates(const Curve& curve) const override {
     std::vector<std::vector<double>> all(parameters().size());
@@ -70,7 +70,7 @@ class LimitLaw final : public PublishedLaw {
 
  private:
   Terms terms_;
-  From from_;
+  From domain_;
   std::size_t n_linear_;
 };
 

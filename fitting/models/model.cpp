@@ -24,11 +24,11 @@ double Model::value_and_gradient(double t, const double* p, double* gradient) co
   ParameterValues moved(p, p + n);
   for (std::size_t j = 0; j < n; ++j) {
     const double h = difference_step(parameters()[j], p[j]);
-    const auto at = [&](double steps) {
+    const auto value_at = [&](double steps) {
       moved[j] = p[j] + steps * h;
       return value(t, moved.data());
     };
-    gradient[j] = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
+    gradient[j] = (8 * (value_at(1) - value_at(-1)) - (value_at(2) - value_at(-2))) / (12 * h);
     moved[j] = p[j];
   }
   return value(t, p);

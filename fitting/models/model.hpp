@@ -28,7 +28,7 @@ struct Combination {
   std::string name;     // B/tau
   std::string meaning;  // "first slope of the logarithm"
   ParameterUnit unit = ParameterUnit::none;
-  std::size_t kept = 0, other = 0;
+  std::size_t kept = 0, partner = 0;
   int power = 1;
 };
 

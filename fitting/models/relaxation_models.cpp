@@ -152,12 +152,12 @@ double InverseLogHeight::value(double t, const double* p) const {
 double InverseLogHeight::value_and_gradient(double t, const double* p, double* gradient) const {
   const double log = std::log1p(t / p[3]);
   const double grown = p[2] * log;
-  const double below = p[0] / p[1] + grown;
-  const double value = p[0] * (1 + grown) / below;
+  const double denominator = p[0] / p[1] + grown;
+  const double value = p[0] * (1 + grown) / denominator;
   // d/dg of (1 + g)/(c + g) is (c - 1)/(c + g)^2.
-  const double by_growth = p[0] * (p[0] / p[1] - 1) / (below * below);
-  gradient[0] = (1 + grown) * grown / (below * below);
-  gradient[1] = value / below * p[0] / (p[1] * p[1]);
+  const double by_growth = p[0] * (p[0] / p[1] - 1) / (denominator * denominator);
+  gradient[0] = (1 + grown) * grown / (denominator * denominator);
+  gradient[1] = value / denominator * p[0] / (p[1] * p[1]);
   gradient[2] = by_growth * log;
   gradient[3] = -by_growth * p[2] * (t / p[3]) / (p[3] + t);
   return value;

@@ -25,12 +25,12 @@ double extent(const Curve& curve) {
 // d ln Gamma(x) / dx for x > 0: recurrence up to 10, then Stirling's series (Abramowitz & Stegun
 // 6.3.5, 6.3.18).
 double digamma(double x) {
-  double below = 0;
-  for (; x < 10; ++x) below += 1 / x;
+  double recurrence = 0;
+  for (; x < 10; ++x) recurrence += 1 / x;
   const double y = 1 / (x * x);
   const double series =
       y * (1.0 / 12 - y * (1.0 / 120 - y * (1.0 / 252 - y * (1.0 / 240 - y * (1.0 / 132)))));
-  return std::log(x) - 0.5 / x - series - below;
+  return std::log(x) - 0.5 / x - series - recurrence;
 }
 
 }  // namespace
@@ -58,9 +58,9 @@ double DensityProfile::value(double t, const double* p) const {
 double DensityProfile::value_and_gradient(double t, const double* p, double* gradient) const {
   // share = 1/(1 + e), rest = e/(1 + e), without overflow on either side.
   const double e = std::exp(-std::abs(p[2] * (t - p[3])));
-  const bool above = p[2] * (t - p[3]) > 0;
-  const double share = (above ? e : 1) / (1 + e);
-  const double rest = (above ? 1 : e) / (1 + e);
+  const bool is_above = p[2] * (t - p[3]) > 0;
+  const double share = (is_above ? e : 1) / (1 + e);
+  const double rest = (is_above ? 1 : e) / (1 + e);
   const double line = p[0] - p[1] * t;
   gradient[0] = share;
   gradient[1] = -t * share;

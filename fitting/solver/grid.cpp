@@ -74,20 +74,21 @@ bool Landscape::is_valley(std::size_t index) const {
   std::size_t neighbours = 1;
   for (std::size_t axis = 0; axis < lengths_.size(); ++axis) neighbours *= 3;
   for (std::size_t number = 0; number < neighbours; ++number) {
-    std::size_t other = index, rest = number;
+    std::size_t neighbour = index, rest = number;
     bool inside = true;
     for (std::size_t axis = 0; axis < lengths_.size(); ++axis, rest /= 3) {
       const std::size_t digit = index / strides_[axis] % lengths_[axis];
       if (rest % 3 == 1) {
         inside = inside && digit > 0;
-        other -= strides_[axis];
+        neighbour -= strides_[axis];
       } else if (rest % 3 == 2) {
         inside = inside && digit + 1 < lengths_[axis];
-        other += strides_[axis];
+        neighbour += strides_[axis];
       }
     }
     if (!inside) continue;
-    if (costs[other] < costs[index] || (costs[other] == costs[index] && other < index)) {
+    if (costs[neighbour] < costs[index] ||
+        (costs[neighbour] == costs[index] && neighbour < index)) {
       return false;
     }
   }

@@ -37,14 +37,14 @@ class Descent {
   void spend(Eigen::Index n) {
     if (options_.budget) options_.budget->spend(n);
   }
-  bool over(EndReason reason) {
-    at_.reason = reason;
+  bool finish(EndReason reason) {
+    current_.reason = reason;
     return false;
   }
 
   const Residuals& residuals_;
   const SolverOptions& options_;
-  Minimum at_;
+  Minimum current_;
   Eigen::VectorXd trial_r_;
   Eigen::VectorXd scale_;
   double radius_ = 0;
@@ -52,23 +52,24 @@ class Descent {
 };
 
 bool Descent::evaluate_all(const Eigen::VectorXd& x) {
-  residuals_.values_and_jacobian(x, at_.r, at_.jacobian);
-  ++at_.evaluations;
-  ++at_.jacobian_evaluations;
+  residuals_.values_and_jacobian(x, current_.r, current_.jacobian);
+  ++current_.evaluations;
+  ++current_.jacobian_evaluations;
   spend(1 + residuals_.n_variables());
-  return at_.r.allFinite() && at_.jacobian.allFinite() && std::isfinite(at_.r.squaredNorm());
+  return current_.r.allFinite() && current_.jacobian.allFinite() &&
+         std::isfinite(current_.r.squaredNorm());
 }
 
 bool Descent::evaluate(const Eigen::VectorXd& x) {
   residuals_.values(x, trial_r_);
-  ++at_.evaluations;
+  ++current_.evaluations;
   spend(1);
   return trial_r_.allFinite() && std::isfinite(trial_r_.squaredNorm());
 }
 
 // A column of zeros gets the smallest scale of the others: its variable is free to move.
 void Descent::update_scale() {
-  Eigen::VectorXd norms = at_.jacobian.colwise().norm().transpose();
+  Eigen::VectorXd norms = current_.jacobian.colwise().norm().transpose();
   const double largest = norms.maxCoeff();
   if (scale_.size() == 0) {
     scale_ = Eigen::VectorXd::Zero(norms.size());
@@ -86,9 +87,9 @@ void Descent::update_scale() {
 // r along x + h v has the second derivative r_vv in h; half the step that undoes it is added.
 Eigen::VectorXd Descent::accelerated(const TrustStep& steps, const Eigen::VectorXd& step) {
   constexpr double h = 0.1;
-  if (!evaluate(at_.x + h * step)) return step;
-  const Eigen::VectorXd along = at_.jacobian * step;
-  const Eigen::VectorXd second = (2 / h) * ((trial_r_ - at_.r) / h - along);
+  if (!evaluate(current_.x + h * step)) return step;
+  const Eigen::VectorXd first_derivative = current_.jacobian * step;
+  const Eigen::VectorXd second = (2 / h) * ((trial_r_ - current_.r) / h - first_derivative);
   const Eigen::VectorXd correction = 0.5 * steps.damped(second);
   const double length = scaled_length(correction);
   if (!(2 * length <= largest_acceleration * scaled_length(step))) return step;
@@ -96,26 +97,26 @@ Eigen::VectorXd Descent::accelerated(const TrustStep& steps, const Eigen::Vector
 }
 
 void Descent::take(const Eigen::VectorXd& x) {
-  at_.x = x;
-  at_.r = trial_r_;
-  at_.cost = at_.r.squaredNorm();
+  current_.x = x;
+  current_.r = trial_r_;
+  current_.cost = current_.r.squaredNorm();
 }
 
 bool Descent::try_step(TrustStep& steps) {
   stepped_ = false;
-  Eigen::VectorXd step = steps.within(radius_);
+  Eigen::VectorXd step = steps.step_within(radius_);
   const double linear_length = scaled_length(step);
-  if (!step.allFinite() || linear_length == 0) return over(EndReason::no_progress);
+  if (!step.allFinite() || linear_length == 0) return finish(EndReason::no_progress);
   const double damping = steps.lambda() * linear_length * linear_length;
-  const double predicted = (steps.linear_change(step) + 2 * damping) / at_.cost;
+  const double predicted = (steps.linear_change(step) + 2 * damping) / current_.cost;
   const bool small = predicted <= options_.cost_tolerance;
-  const bool short_step = linear_length <= options_.step_tolerance * scaled_length(at_.x);
+  const bool short_step = linear_length <= options_.step_tolerance * scaled_length(current_.x);
   if (options_.geodesic_acceleration && !small) step = accelerated(steps, step);
 
-  const Eigen::VectorXd x = at_.x + step;
+  const Eigen::VectorXd x = current_.x + step;
   const bool finite = x.allFinite() && evaluate(x);
   const double cost = finite ? trial_r_.squaredNorm() : std::numeric_limits<double>::infinity();
-  const double gain = finite ? (at_.cost - cost) / at_.cost : -1;
+  const double gain = finite ? (current_.cost - cost) / current_.cost : -1;
   const double ratio = predicted > 0 ? gain / predicted : 0;
   if (ratio < 0.25) {
     radius_ = (gain >= 0 ? 0.5 : 0.25) * std::min(radius_, linear_length);
@@ -126,29 +127,30 @@ bool Descent::try_step(TrustStep& steps) {
     take(x);
     stepped_ = true;
   }
-  if (small && gain <= options_.cost_tolerance) return over(EndReason::cost);
-  if (short_step) return over(EndReason::step);
-  if (radius_ <= std::numeric_limits<double>::epsilon() * 1e-3 * scaled_length(at_.x)) {
-    return over(EndReason::no_progress);
+  if (small && gain <= options_.cost_tolerance) return finish(EndReason::cost);
+  if (short_step) return finish(EndReason::step);
+  if (radius_ <= std::numeric_limits<double>::epsilon() * 1e-3 * scaled_length(current_.x)) {
+    return finish(EndReason::no_progress);
   }
   return true;
 }
 
 bool Descent::iterate() {
-  if (!evaluate_all(at_.x)) return over(EndReason::no_progress);
-  ++at_.iterations;
+  if (!evaluate_all(current_.x)) return finish(EndReason::no_progress);
+  ++current_.iterations;
   update_scale();
-  if (at_.iterations == 1) {
-    const double length = scaled_length(at_.x);
+  if (current_.iterations == 1) {
+    const double length = scaled_length(current_.x);
     radius_ = options_.first_radius * (length > 0 ? length : 1);
   }
-  if (std::sqrt(at_.cost) <= options_.exact_tolerance * options_.data_norm || at_.cost == 0) {
-    return over(EndReason::exact);
+  if (std::sqrt(current_.cost) <= options_.exact_tolerance * options_.data_norm ||
+      current_.cost == 0) {
+    return finish(EndReason::exact);
   }
-  TrustStep steps(at_.jacobian, at_.r, scale_);
-  if (steps.gradient_cosine() <= options_.gradient_tolerance) return over(EndReason::gradient);
+  TrustStep steps(current_.jacobian, current_.r, scale_);
+  if (steps.gradient_cosine() <= options_.gradient_tolerance) return finish(EndReason::gradient);
   do {
-    if (spent()) return over(EndReason::budget);
+    if (spent()) return finish(EndReason::budget);
     if (!try_step(steps)) return false;
   } while (!stepped_);
   return true;
@@ -162,13 +164,13 @@ void Descent::polish() {
   Eigen::VectorXd last;
   double last_length = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 30; ++i) {
-    if (!evaluate_all(at_.x)) return;
-    scale_ = at_.jacobian.colwise().norm().transpose();
+    if (!evaluate_all(current_.x)) return;
+    scale_ = current_.jacobian.colwise().norm().transpose();
     if (!(scale_.minCoeff() > 0)) return;
-    TrustStep steps(at_.jacobian, at_.r, scale_);
+    TrustStep steps(current_.jacobian, current_.r, scale_);
     if (!steps.full_rank()) return;
-    Eigen::VectorXd step = steps.within(std::numeric_limits<double>::infinity());
-    const double change = steps.linear_change(step) / at_.cost;
+    Eigen::VectorXd step = steps.step_within(std::numeric_limits<double>::infinity());
+    const double change = steps.linear_change(step) / current_.cost;
     const double length = scaled_length(step);
     if (change > 1e-6 || change < 1e-27 || !(length < 0.97 * last_length)) return;
     const double ratio = last.size() > 0 ? step.dot(last) / last.squaredNorm() : 0;
@@ -180,32 +182,34 @@ void Descent::polish() {
       step /= 1 - ratio;
       last.resize(0);
     }
-    const Eigen::VectorXd x = at_.x + step;
+    const Eigen::VectorXd x = current_.x + step;
     if (!x.allFinite() || !evaluate(x)) return;
-    if (trial_r_.squaredNorm() > at_.cost * (1 + 1e-10) + rounding * std::sqrt(at_.cost)) return;
+    if (trial_r_.squaredNorm() > current_.cost * (1 + 1e-10) + rounding * std::sqrt(current_.cost))
+      return;
     take(x);
-    ++at_.iterations;
+    ++current_.iterations;
   }
 }
 
 Minimum Descent::run(const Eigen::VectorXd& start) {
-  at_.x = start;
-  at_.r.resize(residuals_.n_residuals());
+  current_.x = start;
+  current_.r.resize(residuals_.n_residuals());
   trial_r_.resize(residuals_.n_residuals());
-  at_.jacobian.resize(residuals_.n_residuals(), residuals_.n_variables());
-  at_.jacobian.setZero();
+  current_.jacobian.resize(residuals_.n_residuals(), residuals_.n_variables());
+  current_.jacobian.setZero();
   if (!start.allFinite() || !evaluate(start)) {
-    at_.cost = std::numeric_limits<double>::infinity();
-    return at_;
+    current_.cost = std::numeric_limits<double>::infinity();
+    return current_;
   }
   take(start);
-  at_.reason = EndReason::iteration_limit;
-  while (at_.iterations < options_.max_iterations && iterate()) {
+  current_.reason = EndReason::iteration_limit;
+  while (current_.iterations < options_.max_iterations && iterate()) {
   }
-  if (options_.polish && is_minimum(at_.reason) && at_.reason != EndReason::exact) polish();
+  if (options_.polish && is_minimum(current_.reason) && current_.reason != EndReason::exact)
+    polish();
   // r and J belong to x, whichever step was the last.
-  evaluate_all(at_.x);
-  return at_;
+  evaluate_all(current_.x);
+  return current_;
 }
 
 // A minimum where every variable still matters.
@@ -254,14 +258,14 @@ Minimum minimise(const Residuals& residuals, const Eigen::VectorXd& start,
   };
   if (!options.fallbacks || ended()) return best;
   // A descent that ran to infinity or got stuck: other step lengths lead elsewhere.
-  SolverOptions others[] = {options, options, options};
-  others[0].geodesic_acceleration = !options.geodesic_acceleration;
-  others[1].first_radius = 0.1 * options.first_radius;
-  others[2].scaling = StepScaling::first;
-  others[2].first_radius = 10 * options.first_radius;
+  SolverOptions fallbacks[] = {options, options, options};
+  fallbacks[0].geodesic_acceleration = !options.geodesic_acceleration;
+  fallbacks[1].first_radius = 0.1 * options.first_radius;
+  fallbacks[2].scaling = StepScaling::first;
+  fallbacks[2].first_radius = 10 * options.first_radius;
   int number = 0;
-  for (const SolverOptions& other : others) {
-    Minimum next = Descent(residuals, other).run(start);
+  for (const SolverOptions& fallback : fallbacks) {
+    Minimum next = Descent(residuals, fallback).run(start);
     next.fallback = ++number;
     const bool better = next.cost < best.cost * (1 - 1e-9);
     const int iterations = best.iterations + next.iterations;

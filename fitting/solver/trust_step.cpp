@@ -39,7 +39,7 @@ Eigen::VectorXd TrustStep::solve(double lambda, const Eigen::VectorXd& b,
   return system.upper.template triangularView<Eigen::Upper>().solve(system.right);
 }
 
-Eigen::VectorXd TrustStep::within(double radius) {
+Eigen::VectorXd TrustStep::step_within(double radius) {
   // In scaled variables q = D p throughout.
   lambda_ = 0;
   double lower = 0;

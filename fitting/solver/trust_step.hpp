@@ -16,7 +16,7 @@ class TrustStep {
 
   /// The step that minimises |J p + r| under |D p| <= radius, to 10 % of the radius; sets the
   /// damping. More 1978.
-  Eigen::VectorXd within(double radius);
+  Eigen::VectorXd step_within(double radius);
   /// Solves (J^T J + lambda D^2) p = -J^T v with the damping of the last step.
   Eigen::VectorXd damped(const Eigen::VectorXd& v) const;
 

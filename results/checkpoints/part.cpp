@@ -82,7 +82,7 @@ Content read_part(InputFile& file, const std::string& path, const PartIdentity& 
 }  // namespace
 
 std::string parts_folder(const std::string& results_path) {
-  return beside(results_path, ".parts");
+  return path_with_ending(results_path, ".parts");
 }
 
 std::string state_path(const std::string& results_path, RealizationId id) {

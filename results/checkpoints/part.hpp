@@ -46,7 +46,7 @@ struct PartState {
 
 /// Position of a row of numbers in a part's file, and the number of rows.
 struct Extent {
-  std::uint64_t n = 0, at = 0;
+  std::uint64_t n = 0, offset = 0;
 };
 /// And a snapshot, but for what takes little room.
 struct SnapshotPlace {

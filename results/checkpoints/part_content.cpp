@@ -25,9 +25,10 @@ std::size_t SeriesPiece::bytes() const {
   std::size_t n = rows.size() * sizeof(double);
   for (const SnapshotRecord& record : snapshots) {
     n += 512 + record.contacts.size() * sizeof(Contact);
-    for (const SphereVector& one : sphere_vectors) n += (record.*one.values).size() * sizeof(Vec3);
-    for (const HeightProfile& one : height_profiles)
-      n += (record.*one.values).size() * sizeof(double);
+    for (const SphereVector& vector : sphere_vectors)
+      n += (record.*vector.values).size() * sizeof(Vec3);
+    for (const HeightProfile& profile : height_profiles)
+      n += (record.*profile.values).size() * sizeof(double);
   }
   return n;
 }
@@ -107,14 +108,14 @@ void put(ByteWriter& writer, const SeriesPiece& piece) {
   writer.put<std::uint64_t>(piece.snapshots.size());
   for (const SnapshotRecord& record : piece.snapshots) {
     writer.put(record.tap);
-    for (const SphereVector& one : sphere_vectors) writer.put(record.*one.values);
-    for (const HeightProfile& one : height_profiles) writer.put(record.*one.values);
+    for (const SphereVector& vector : sphere_vectors) writer.put(record.*vector.values);
+    for (const HeightProfile& profile : height_profiles) writer.put(record.*profile.values);
     writer.put(record.contacts);
     writer.put(record.coordination.has_value());
     if (record.coordination) writer.put(*record.coordination);
     writer.put(record.forces.has_value());
     if (!record.forces) continue;
-    for (const double one : record.forces->moment) writer.put(one);
+    for (const double value : record.forces->moment) writer.put(value);
     writer.put(record.forces->walls);
   }
 }
@@ -127,7 +128,7 @@ void get_small(ByteReader& reader, Snapshot& snapshot) {
   if (reader.get_flag()) snapshot.coordination = reader.get<double>();
   if (!reader.get_flag()) return;
   snapshot.forces.emplace();
-  for (double& one : snapshot.forces->moment) one = reader.get<double>();
+  for (double& value : snapshot.forces->moment) value = reader.get<double>();
   snapshot.forces->walls = reader.get_vector<WallForce>();
 }
 
@@ -141,9 +142,10 @@ SeriesPiece get_piece(ByteReader& reader) {
   for (std::uint64_t i = 0; i < n_snapshots; ++i) {
     SnapshotRecord record;
     record.tap = reader.get<std::uint64_t>();
-    for (const SphereVector& one : sphere_vectors) record.*one.values = reader.get_vector<Vec3>();
-    for (const HeightProfile& one : height_profiles)
-      record.*one.values = reader.get_vector<double>();
+    for (const SphereVector& vector : sphere_vectors)
+      record.*vector.values = reader.get_vector<Vec3>();
+    for (const HeightProfile& profile : height_profiles)
+      record.*profile.values = reader.get_vector<double>();
     record.contacts = reader.get_vector<Contact>();
     get_small(reader, record);
     piece.snapshots.push_back(std::move(record));
@@ -168,14 +170,14 @@ void put(ByteWriter& writer, const PartState& part) {
 PiecePlaces get_piece_places(ByteReader& reader) {
   // Behind its length, which comes first.
   const auto skip = [&]<class T>(T) {
-    const std::uint64_t at = reader.position() + sizeof(std::uint64_t);
-    return Extent{reader.skip_vector<T>(), at};
+    const std::uint64_t offset = reader.position() + sizeof(std::uint64_t);
+    return Extent{reader.skip_vector<T>(), offset};
   };
   PiecePlaces piece;
   piece.first_row = reader.get<std::uint64_t>();
   const Extent rows = skip(double{});
   piece.n_numbers = rows.n;
-  piece.rows_at = rows.at;
+  piece.rows_at = rows.offset;
   const auto n_snapshots = reader.get<std::uint64_t>();
   for (std::uint64_t i = 0; i < n_snapshots; ++i) {
     SnapshotPlace place;

@@ -14,27 +14,28 @@ class InMemory : public StoredRealization {
   RealizationHead head() override { return record_; }
   std::uint64_t n_rows() const override { return record_.rows.size() / n_columns_; }
   void read_rows(std::uint64_t first, std::span<double> rows) override {
-    const auto from = record_.rows.begin() + static_cast<std::ptrdiff_t>(first * n_columns_);
-    std::copy_n(from, rows.size(), rows.begin());
+    const auto begin = record_.rows.begin() + static_cast<std::ptrdiff_t>(first * n_columns_);
+    std::copy_n(begin, rows.size(), rows.begin());
   }
   std::vector<SnapshotOutline> snapshots() override {
     std::vector<SnapshotOutline> outlines;
-    for (const SnapshotRecord& one : record_.snapshots) {
-      SnapshotOutline outline{.tap = one.tap,
-                              .n_contacts = one.contacts.size(),
-                              .coordination = one.coordination,
-                              .forces = one.forces};
+    for (const SnapshotRecord& snapshot : record_.snapshots) {
+      SnapshotOutline outline{.tap = snapshot.tap,
+                              .n_contacts = snapshot.contacts.size(),
+                              .coordination = snapshot.coordination,
+                              .forces = snapshot.forces};
       for (std::size_t k = 0; k < n_sphere_vectors; ++k)
-        outline.n_spheres[k] = static_cast<std::uint32_t>((one.*sphere_vectors[k].values).size());
+        outline.n_spheres[k] =
+            static_cast<std::uint32_t>((snapshot.*sphere_vectors[k].values).size());
       outlines.push_back(std::move(outline));
     }
     return outlines;
   }
-  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t which) override {
-    return values_at(tap, sphere_vectors[which].values);
+  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t index) override {
+    return values_at(tap, sphere_vectors[index].values);
   }
-  std::vector<double> profile(std::uint64_t tap, std::size_t which) override {
-    return values_at(tap, height_profiles[which].values);
+  std::vector<double> profile(std::uint64_t tap, std::size_t index) override {
+    return values_at(tap, height_profiles[index].values);
   }
   std::vector<Contact> contacts(std::uint64_t tap) override {
     return values_at(tap, &SnapshotRecord::contacts);
@@ -59,20 +60,22 @@ std::unique_ptr<StoredRealization> in_memory(RealizationRecord record, std::size
 
 std::vector<SnapshotRecord> snapshots_of(StoredRealization& realization) {
   std::vector<SnapshotRecord> records;
-  for (const SnapshotOutline& one : realization.snapshots()) {
-    SnapshotRecord record{
-        .tap = one.tap, .centres = {}, .coordination = one.coordination, .height_histogram = {}};
-    bool kept = one.coordination || one.forces;
+  for (const SnapshotOutline& outline : realization.snapshots()) {
+    SnapshotRecord record{.tap = outline.tap,
+                          .centres = {},
+                          .coordination = outline.coordination,
+                          .height_histogram = {}};
+    bool kept = outline.coordination || outline.forces;
     for (std::size_t k = 0; k < n_sphere_vectors; ++k) {
-      record.*sphere_vectors[k].values = realization.vectors(one.tap, k);
+      record.*sphere_vectors[k].values = realization.vectors(outline.tap, k);
       kept = kept || !(record.*sphere_vectors[k].values).empty();
     }
     for (std::size_t k = 0; k < n_height_profiles; ++k) {
-      record.*height_profiles[k].values = realization.profile(one.tap, k);
+      record.*height_profiles[k].values = realization.profile(outline.tap, k);
       kept = kept || !(record.*height_profiles[k].values).empty();
     }
-    record.contacts = realization.contacts(one.tap);
-    record.forces = one.forces;
+    record.contacts = realization.contacts(outline.tap);
+    record.forces = outline.forces;
     if (kept) records.push_back(std::move(record));
   }
   return records;
@@ -80,11 +83,11 @@ std::vector<SnapshotRecord> snapshots_of(StoredRealization& realization) {
 
 std::vector<SnapshotRecord> positions_of(StoredRealization& realization) {
   std::vector<SnapshotRecord> records;
-  for (const SnapshotOutline& one : realization.snapshots()) {
-    if (one.n_spheres[kept_positions] == 0) continue;
+  for (const SnapshotOutline& outline : realization.snapshots()) {
+    if (outline.n_spheres[kept_positions] == 0) continue;
     SnapshotRecord& record = records.emplace_back();
-    record.tap = one.tap;
-    record.centres = realization.vectors(one.tap, kept_positions);
+    record.tap = outline.tap;
+    record.centres = realization.vectors(outline.tap, kept_positions);
   }
   return records;
 }

@@ -39,13 +39,13 @@ class StoredRealization {
   virtual std::vector<SnapshotOutline> snapshots() = 0;
   /// For a snapshot, sphere_vectors[which] and height_profiles[which]; empty where none was kept at
   /// that tap.
-  virtual std::vector<Vec3> vectors(std::uint64_t tap, std::size_t which) = 0;
-  virtual std::vector<double> profile(std::uint64_t tap, std::size_t which) = 0;
+  virtual std::vector<Vec3> vectors(std::uint64_t tap, std::size_t index) = 0;
+  virtual std::vector<double> profile(std::uint64_t tap, std::size_t index) = 0;
   virtual std::vector<Contact> contacts(std::uint64_t tap) = 0;
 };
 
 /// Receives the number of written realizations of a results file.
-using StoringProgress = std::function<void(std::uint64_t done, std::uint64_t of)>;
+using StoringProgress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
 /// One that is held in memory; by default one of which nothing is there.
 std::unique_ptr<StoredRealization> in_memory(RealizationRecord record = {},

@@ -160,7 +160,7 @@ PointNumbers::PointNumbers(const Study& study) {
   for (std::uint32_t p = 0; p < study.points.size(); ++p) numbers_.emplace(study.points[p].id, p);
 }
 
-std::optional<std::uint32_t> PointNumbers::of(std::uint64_t id) const {
+std::optional<std::uint32_t> PointNumbers::find(std::uint64_t id) const {
   const auto found = numbers_.find(id);
   if (found == numbers_.end()) return std::nullopt;
   return found->second;
@@ -169,10 +169,10 @@ std::optional<std::uint32_t> PointNumbers::of(std::uint64_t id) const {
 std::optional<std::uint32_t> other_start(const Study& a, const Study& b) {
   const PointNumbers numbers(b);
   for (std::uint32_t p = 0; p < a.points.size(); ++p) {
-    const auto twin = numbers.of(a.points[p].id);
+    const auto twin = numbers.find(a.points[p].id);
     if (!twin) continue;
-    const std::string &one = a.points[p].start_sum, &other = b.points[*twin].start_sum;
-    if (!one.empty() && !other.empty() && one != other) return p;
+    const std::string &own_sum = a.points[p].start_sum, &twin_sum = b.points[*twin].start_sum;
+    if (!own_sum.empty() && !twin_sum.empty() && own_sum != twin_sum) return p;
   }
   return std::nullopt;
 }

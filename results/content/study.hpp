@@ -79,7 +79,7 @@ class PointNumbers {
  public:
   explicit PointNumbers(const Study& study);
   /// Nothing where no point has this id.
-  std::optional<std::uint32_t> of(std::uint64_t id) const;
+  std::optional<std::uint32_t> find(std::uint64_t id) const;
 
  private:
   std::unordered_map<std::uint64_t, std::uint32_t> numbers_;

@@ -111,12 +111,12 @@ std::string InputFile::stamp() const {
 
 std::string InputFile::rest() {
   std::string text;
-  std::vector<std::byte> some(bytes_at_once);
-  for (std::size_t n = some.size(); n == some.size();) {
-    n = read(some);
+  std::vector<std::byte> chunk(bytes_at_once);
+  for (std::size_t n = chunk.size(); n == chunk.size();) {
+    n = read(chunk);
     if (text.size() + n > longest_text)
       throw ResultsError(path_, "is longer than 256 MB: no text that jostle reads");
-    text.append(reinterpret_cast<const char*>(some.data()), n);
+    text.append(reinterpret_cast<const char*>(chunk.data()), n);
   }
   return text;
 }

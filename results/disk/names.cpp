@@ -25,14 +25,14 @@ std::size_t longest_name_beside(const std::string& path) {
   return longest > 0 ? static_cast<std::size_t>(longest) : NAME_MAX;
 }
 
-std::string beside(const std::string& path, std::string_view ending) {
+std::string path_with_ending(const std::string& path, std::string_view ending) {
   const std::size_t longest = longest_name_beside(path), start = start_of_name(path);
   const std::string name = path.substr(start);
   if (name.size() + ending.size() <= longest) return path + std::string(ending);
   constexpr std::size_t digits = 16;
   std::size_t kept = longest - std::min(longest, ending.size() + 1 + digits);
-  const auto is_inside_character = [&](std::size_t at) {
-    return (static_cast<unsigned char>(name[at]) & 0xc0u) == 0x80u;
+  const auto is_inside_character = [&](std::size_t index) {
+    return (static_cast<unsigned char>(name[index]) & 0xc0u) == 0x80u;
   };
   while (kept > 0 && is_inside_character(kept)) --kept;
   return fmt::format("{}{}~{}{}", path.substr(0, start), name.substr(0, kept),

@@ -12,7 +12,7 @@ std::size_t longest_name_beside(const std::string& path);
 
 /// `path` with an ending. Where the name would be too long for its folder: the first bytes of the
 /// old name, "~" and 16 digits that stand for all of it, and the ending.
-std::string beside(const std::string& path, std::string_view ending);
+std::string path_with_ending(const std::string& path, std::string_view ending);
 
 /// Throws ResultsError where the name of a file to be written is too long for its folder.
 void require_name_fits(const std::string& path);

@@ -53,19 +53,19 @@ void put_in_front(std::list<std::string>& rest, const fs::path& path) {
 /// Goes along a path as the kernel does, from folder to folder, and looks at every link.
 void require_trusted_way(const std::string& path) {
   constexpr int most_links = 40;  // the limit of Linux
-  fs::path here = fs::path(path).root_path();
+  fs::path current = fs::path(path).root_path();
   std::list<std::string> rest;
   put_in_front(rest, path);
   for (int links = 0; !rest.empty();) {
-    const fs::path next = here / rest.front();
+    const fs::path next = current / rest.front();
     rest.pop_front();
     struct stat entry, folder;
     if (::lstat(next.c_str(), &entry) != 0) return;  // nothing there that could lead elsewhere
     if (S_ISDIR(entry.st_mode) || (S_ISREG(entry.st_mode) && rest.empty())) {
-      here = next;
+      current = next;
       continue;
     }
-    if (::stat(here.empty() ? "." : here.c_str(), &folder) != 0) return;
+    if (::stat(current.empty() ? "." : current.c_str(), &folder) != 0) return;
     const Place place = rest.empty() ? Place::at_the_end : Place::on_the_way;
     if (!is_trusted(entry, folder, place)) refuse(next, entry);
     if (!S_ISLNK(entry.st_mode)) return;
@@ -73,7 +73,7 @@ void require_trusted_way(const std::string& path) {
     std::error_code error;
     const fs::path target = fs::read_symlink(next, error);
     if (error) fail_on_disk(path, "follow", error.value());
-    if (target.is_absolute()) here = target.root_path();
+    if (target.is_absolute()) current = target.root_path();
     put_in_front(rest, target);
   }
 }

@@ -29,8 +29,8 @@ bool has_no_more_files(const std::string& path) {
 }
 
 /// Advice after a failed call.
-std::string way_out(const std::string& path, std::string_view what, int error) {
-  if (what == "open" || what == "read") return "";
+std::string way_out(const std::string& path, std::string_view operation, int error) {
+  if (operation == "open" || operation == "read") return "";
   switch (error) {
     case ENOSPC:
       return has_no_more_files(path) ? "; its file system holds as many files as it can: remove "
@@ -84,9 +84,9 @@ std::string protection_of(const struct stat& status, int error) {
 
 }  // namespace
 
-void fail_on_disk(const std::string& path, const char* what, int error) {
-  throw ResultsError(
-      path, fmt::format("cannot {}: {}{}", what, std::strerror(error), way_out(path, what, error)));
+void fail_on_disk(const std::string& path, const char* operation, int error) {
+  throw ResultsError(path, fmt::format("cannot {}: {}{}", operation, std::strerror(error),
+                                       way_out(path, operation, error)));
 }
 
 void write_all(const std::string& path, int descriptor, std::span<const std::byte> bytes) {

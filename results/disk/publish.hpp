@@ -37,8 +37,8 @@ void sync_folder_of(const std::string& path);
 void require_free_space(const std::string& path, std::uint64_t bytes,
                         const char* advice = "free some space or write elsewhere");
 
-/// Throws ResultsError for a failed system call: "cannot `what`: " and the system's reason, with
-/// the way out where there is one.
-[[noreturn]] void fail_on_disk(const std::string& path, const char* what, int error);
+/// Throws ResultsError for a failed system call: "cannot `operation`: " and the system's reason,
+/// with the way out where there is one.
+[[noreturn]] void fail_on_disk(const std::string& path, const char* operation, int error);
 
 }  // namespace jostle::inline results

@@ -71,8 +71,9 @@ std::string line_for(const std::string& path, const Descriptor& file, std::uint6
 /// nothing where there is none. https://docs.hdfgroup.org/hdf5/develop/_f_m_t3.html
 std::optional<std::uint64_t> signature_place(const std::string& path, const Descriptor& file) {
   const std::uint64_t size = size_of(path, file);
-  for (std::uint64_t at = 0; at + hdf5_signature.size() <= size; at = at == 0 ? 512 : 2 * at)
-    if (read_at(path, file, at, hdf5_signature.size()) == hdf5_signature) return at;
+  for (std::uint64_t offset = 0; offset + hdf5_signature.size() <= size;
+       offset = offset == 0 ? 512 : 2 * offset)
+    if (read_at(path, file, offset, hdf5_signature.size()) == hdf5_signature) return offset;
   return std::nullopt;
 }
 
@@ -81,7 +82,7 @@ std::uint64_t hdf5_end(const std::string& path, const Descriptor& file) {
   constexpr std::size_t longest = 64;
   const std::string block = read_at(path, file, 0, longest);
   if (block.size() < longest) return 0;
-  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(block[at]); };
+  const auto byte = [&](std::size_t offset) { return static_cast<unsigned char>(block[offset]); };
   const unsigned version = byte(8);
   constexpr unsigned bytes_an_offset = 8;
   if (version > 3 || byte(version < 2 ? 13 : 9) != bytes_an_offset) return 0;

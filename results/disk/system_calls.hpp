@@ -31,9 +31,9 @@ class Descriptor {
  public:
   Descriptor() = default;
   explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
-  Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
+  Descriptor(Descriptor&& source) noexcept : descriptor_(std::exchange(source.descriptor_, -1)) {}
+  Descriptor& operator=(Descriptor&& source) noexcept {
+    std::swap(descriptor_, source.descriptor_);
     return *this;
   }
   ~Descriptor() {

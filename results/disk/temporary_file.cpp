@@ -53,7 +53,7 @@ void take_over(const std::string& path, int file, const struct stat& old) {
 }
 
 std::string name_on_the_way(const std::string& target, const std::string& digits) {
-  return beside(target, fmt::format(".{}{}", digits, ending));
+  return path_with_ending(target, fmt::format(".{}{}", digits, ending));
 }
 
 /// True if a file is one that a TemporaryFile makes of what goes to `target`.
@@ -99,9 +99,9 @@ void TemporaryFile::finish() {
   file_ = Descriptor();
 }
 
-void TemporaryFile::publish(const std::function<void()>& before) {
+void TemporaryFile::publish(const std::function<void()>& prepare) {
   finish();
-  if (before) before();
+  if (prepare) prepare();
   if (::rename(name_.c_str(), target_.c_str()) != 0) fail_on_disk(name_, "rename", errno);
   published_ = true;
   sync_folder_of(target_);
@@ -135,12 +135,12 @@ void remove_stale_temporaries(const std::string& path) {
   }
 }
 
-ScratchFolder::ScratchFolder(const std::string& purpose, const std::filesystem::path& within) {
-  std::string name = (within / fmt::format("jostle-{}-XXXXXX", purpose)).string();
+ScratchFolder::ScratchFolder(const std::string& purpose, const std::filesystem::path& parent) {
+  std::string name = (parent / fmt::format("jostle-{}-XXXXXX", purpose)).string();
   output_path(name);  // refuses links of others on the way
   if (::mkdtemp(name.data()) == nullptr) {
     const std::string reason = std::generic_category().message(errno);
-    throw ResultsError(within.string(), fmt::format("cannot make a folder there ({})", reason));
+    throw ResultsError(parent.string(), fmt::format("cannot make a folder there ({})", reason));
   }
   path_ = name;
 }

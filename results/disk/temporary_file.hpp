@@ -27,9 +27,9 @@ class TemporaryFile {
   /// Where it goes.
   const std::string& target() const { return target_; }
   void write(std::span<const std::byte> bytes);
-  /// On disk first, then under its name, then the name on disk. `before` is called once it is on
+  /// On disk first, then under its name, then the name on disk. `prepare` is called once it is on
   /// disk: what must go when the new file comes, and must stay if it does not.
-  void publish(const std::function<void()>& before = {});
+  void publish(const std::function<void()>& prepare = {});
   /// On disk, not yet under its name, and closed: nothing more is written to it.
   void finish();
 
@@ -49,8 +49,8 @@ void remove_stale_temporaries(const std::string& path);
 /// A new empty folder, removed with all that is in it when this goes.
 class ScratchFolder {
  public:
-  /// jostle-PURPOSE-xxxxxx in `within`, or among the temporary files. Throws ResultsError.
-  explicit ScratchFolder(const std::string& purpose, const std::filesystem::path& within =
+  /// jostle-PURPOSE-xxxxxx in `parent`, or among the temporary files. Throws ResultsError.
+  explicit ScratchFolder(const std::string& purpose, const std::filesystem::path& parent =
                                                          std::filesystem::temp_directory_path());
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;

@@ -29,19 +29,19 @@ std::string all_kept(const ResultsFile& file) {
   constexpr int most_lines = 12;
   std::string text;
   int lines = 0;
-  for (const RealizationSummary& one : file.realizations()) {
-    const Taps taps = taps_with_positions(file.positions(one.id));
+  for (const RealizationSummary& realization : file.realizations()) {
+    const Taps taps = taps_with_positions(file.positions(realization.id));
     if (taps.empty()) continue;
     if (++lines > most_lines) return text + "\n  ...";
-    text += fmt::format("\n  sweep point {}, realization {}: taps {}", one.id.point,
-                        one.id.realization, list_of(taps));
+    text += fmt::format("\n  sweep point {}, realization {}: taps {}", realization.id.point,
+                        realization.id.realization, list_of(taps));
   }
   if (text.empty()) return "; the file keeps no positions (\"snapshots\" in a scene)";
   return "; the file keeps" + text;
 }
 
-void require(bool there, const ResultsFile& file, const std::string& wanted) {
-  if (there) return;
+void require(bool is_present, const ResultsFile& file, const std::string& wanted) {
+  if (is_present) return;
   throw std::invalid_argument(
       fmt::format("{}: holds no positions of {}{}", file.path(), wanted, all_kept(file)));
 }

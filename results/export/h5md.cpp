@@ -43,12 +43,12 @@ class FrameTimes {
 /// value [n_frames, rest ...], a frame at a time.
 template <class Number>
 void write_values(hid_t element, Frames frames, const Shape& rest,
-                  const std::function<std::vector<Number>(const ExportedFrame&)>& of) {
+                  const std::function<std::vector<Number>(const ExportedFrame&)>& value_of) {
   Shape shape{frames.size()}, chunk{1};
   shape.insert(shape.end(), rest.begin(), rest.end());
   chunk.insert(chunk.end(), rest.begin(), rest.end());
   RowsDataset<Number> value(element, "value", shape, chunk);
-  for (std::size_t i = 0; i < frames.size(); ++i) value.write(i, of(frames[i]));
+  for (std::size_t i = 0; i < frames.size(); ++i) value.write(i, value_of(frames[i]));
 }
 
 std::vector<double> centres(const ExportedFrame& frame) {

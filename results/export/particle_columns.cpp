@@ -41,10 +41,10 @@ Packing wrapped_inside(const Packing& packing) {
   for (std::size_t i = 0; i < moved.centres.size(); ++i) {
     Vec3& r = moved.centres[i];
     r = into_periods(boundary, r);
-    const bool within = r.x >= 0 && r.x <= boundary.width_x && r.y >= 0 &&
-                        r.y <= boundary.width_y && r.z >= 0 && r.z <= boundary.height &&
-                        boundary_depth(boundary, r) <= sphere_radius;
-    if (!within) {
+    const bool is_inside = r.x >= 0 && r.x <= boundary.width_x && r.y >= 0 &&
+                           r.y <= boundary.width_y && r.z >= 0 && r.z <= boundary.height &&
+                           boundary_depth(boundary, r) <= sphere_radius;
+    if (!is_inside) {
       throw std::invalid_argument(fmt::format(
           "sphere {} lies outside the container, at {}, {}, {}; check that lengths are in "
           "diameters and that the packing was made in this container",

@@ -37,7 +37,8 @@ class ContentWalk {
   void add_attribute(hid_t object, const std::string& name, const std::string& path);
   void add_axes(hid_t dataset, const std::string& path, const Paths& paths);
   template <class Read, class Texts>
-  void add_values(const std::string& what, hid_t type, hid_t space, Read&& read, Texts&& texts);
+  void add_values(const std::string& item_name, hid_t type, hid_t space, Read&& read,
+                  Texts&& texts);
   template <class Number, class Read>
   void add_numbers(hid_t memory_type, const Shape& shape, Read&& read);
   void add_texts(std::span<const std::string> texts);
@@ -166,7 +167,7 @@ void ContentWalk::add_axes(hid_t dataset, const std::string& path, const Paths& 
 }
 
 template <class Read, class Texts>
-void ContentWalk::add_values(const std::string& what, hid_t type, hid_t space, Read&& read,
+void ContentWalk::add_values(const std::string& item_name, hid_t type, hid_t space, Read&& read,
                              Texts&& texts) {
   const Shape shape = shape_of_space(space);
   const std::size_t n = n_elements(shape);
@@ -174,15 +175,15 @@ void ContentWalk::add_values(const std::string& what, hid_t type, hid_t space, R
   const bool is_signed = H5Tget_class(type) == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_2;
   switch (H5Tget_class(type)) {
     case H5T_FLOAT:
-      sink_.add(what + " float" + std::to_string(8 * size) + shape_text(space) + "\n");
+      sink_.add(item_name + " float" + std::to_string(8 * size) + shape_text(space) + "\n");
       return add_numbers<double>(H5T_NATIVE_DOUBLE, shape, read);
     case H5T_INTEGER:
-      sink_.add(what + (is_signed ? " int" : " uint") + std::to_string(8 * size) +
+      sink_.add(item_name + (is_signed ? " int" : " uint") + std::to_string(8 * size) +
                 shape_text(space) + "\n");
       return add_numbers<std::uint64_t>(is_signed ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT64, shape,
                                         read);
     case H5T_STRING:
-      sink_.add(what + " text" + shape_text(space) + "\n");
+      sink_.add(item_name + " text" + shape_text(space) + "\n");
       if (H5Tis_variable_str(type) > 0) return add_texts(texts());
       {
         std::vector<std::byte> raw(n * size);
@@ -190,7 +191,7 @@ void ContentWalk::add_values(const std::string& what, hid_t type, hid_t space, R
         return sink_.add(std::span<const std::byte>(raw));
       }
     default:
-      throw Hdf5Error(what + " is neither a number nor text: not written by jostle");
+      throw Hdf5Error(item_name + " is neither a number nor text: not written by jostle");
   }
 }
 

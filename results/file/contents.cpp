@@ -43,14 +43,14 @@ class ItemHashes : public ContentSink {
   void begin(const std::string& path, const std::string& attribute) override {
     end();
     path_ = path;
-    what_ = attribute.empty() ? path : fmt::format("attribute {} of {}", attribute, path);
+    description_ = attribute.empty() ? path : fmt::format("attribute {} of {}", attribute, path);
     sum_.emplace();
   }
   void add(std::span<const std::byte> bytes) override { sum_->add(bytes); }
   void names(const std::string& path, const char* kind,
              const std::vector<std::string>& names) override {
     begin(path, "");
-    what_ = fmt::format("the list of {} of {}", kind, path);
+    description_ = fmt::format("the list of {} of {}", kind, path);
     is_list_ = true;
     ContentSink::add(fmt::format("{} {}\n", path, kind));
     for (const std::string& name : names)
@@ -60,7 +60,7 @@ class ItemHashes : public ContentSink {
 
  protected:
   struct Item {
-    std::string path, what;
+    std::string path, description;
     bool is_list;
   };
   virtual void take(const Item& item, Hash hash) = 0;
@@ -71,14 +71,14 @@ class ItemHashes : public ContentSink {
     Hash hash = 0;
     for (std::size_t i = 0; i < sizeof(Hash); ++i)
       hash |= Hash{std::to_integer<std::uint8_t>(sum[i])} << (8 * i);
-    take({path_, what_, is_list_}, hash);
+    take({path_, description_, is_list_}, hash);
     sum_.reset();
     is_list_ = false;
   }
 
  private:
   std::optional<Sha256> sum_;
-  std::string path_, what_;
+  std::string path_, description_;
   bool is_list_ = false;
 };
 
@@ -107,9 +107,9 @@ class ComparedHashes : public ItemHashes {
     end();
     std::vector<std::string> changes;
     for (const Item& item : changed_)
-      if (!item.is_list || !explains(item)) changes.push_back(item.what);
+      if (!item.is_list || !explains(item)) changes.push_back(item.description);
     const bool any_gone =
-        std::ranges::any_of(missing_, [](const auto& one) { return one.second > 0; });
+        std::ranges::any_of(missing_, [](const auto& entry) { return entry.second > 0; });
     if (changes.empty() && any_gone) changes.emplace_back("something that is no longer there");
     return changes;
   }
@@ -125,9 +125,9 @@ class ComparedHashes : public ItemHashes {
 
   /// True if another change explains a changed list of names: the added name is reported.
   bool explains(const Item& list) const {
-    const std::string below = list.path == "/" ? "/" : list.path + "/";
-    return std::ranges::any_of(changed_, [&](const Item& one) {
-      return !one.is_list && (one.path == list.path || one.path.starts_with(below));
+    const std::string prefix = list.path == "/" ? "/" : list.path + "/";
+    return std::ranges::any_of(changed_, [&](const Item& item) {
+      return !item.is_list && (item.path == list.path || item.path.starts_with(prefix));
     });
   }
 
@@ -201,8 +201,8 @@ class Digest : public ContentSink {
 
 /// Contents that depend on who made the numbers, or can be made of them again.
 bool is_beside_the_data(const std::string& path) {
-  constexpr std::array beside{"/provenance", "/timing", "/h5md"};
-  return std::ranges::find(beside, path) != beside.end() ||
+  constexpr std::array extra_paths{"/provenance", "/timing", "/h5md"};
+  return std::ranges::find(extra_paths, path) != extra_paths.end() ||
          std::ranges::any_of(derived_groups,
                              [&](const char* name) { return path == std::string("/") + name; });
 }

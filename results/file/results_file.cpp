@@ -43,13 +43,13 @@ Hdf5Handle open_sealed(const std::string& path, const std::string& known_as, Ver
   return naming_file(known_as, [&] { return open_to_read(path); });
 }
 
-std::vector<Work> read_work(const Hdf5Handle& timing, const Shape& each) {
-  const auto seconds = read_numbers<double>(timing, "seconds", &each);
+std::vector<Work> read_work(const Hdf5Handle& timing, const Shape& extent) {
+  const auto seconds = read_numbers<double>(timing, "seconds", &extent);
   const auto start_seconds = exists(timing, "start_seconds")
-                                 ? read_numbers<double>(timing, "start_seconds", &each)
+                                 ? read_numbers<double>(timing, "start_seconds", &extent)
                                  : std::vector<double>(seconds.size(), 0);  // older files
-  const auto trials = read_numbers<std::uint64_t>(timing, "trials", &each);
-  const auto distance_tests = read_numbers<std::uint64_t>(timing, "distance_tests", &each);
+  const auto trials = read_numbers<std::uint64_t>(timing, "trials", &extent);
+  const auto distance_tests = read_numbers<std::uint64_t>(timing, "distance_tests", &extent);
   std::vector<Work> work(seconds.size());
   for (std::size_t r = 0; r < work.size(); ++r) {
     work[r] = {.seconds = seconds[r],
@@ -126,14 +126,14 @@ PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
     return tables;
   }
   const Hdf5Handle observables = open_group(file(), "observables/" + point_name(point));
-  const Shape each{study.realizations};
-  tables.statuses = read_numbers<std::uint8_t>(observables, "status", &each);
-  tables.rows = read_numbers<std::uint64_t>(observables, "rows", &each);
-  require_shape(observables, "reason", each);
+  const Shape extent{study.realizations};
+  tables.statuses = read_numbers<std::uint8_t>(observables, "status", &extent);
+  tables.rows = read_numbers<std::uint64_t>(observables, "rows", &extent);
+  require_shape(observables, "reason", extent);
   tables.reasons = read_texts(observables, "reason");
   require_rows(tables, study.points.at(point));
   const Hdf5Handle timing = open_group(file(), "timing/" + point_name(point));
-  tables.work = read_work(timing, each);
+  tables.work = read_work(timing, extent);
   const Shape taken{study.points.at(point).snapshots.taps.size(), study.realizations};
   const Hdf5Handle snapshots = open_group(file(), "snapshots/" + point_name(point));
   if (exists(snapshots, "coordination"))
@@ -185,12 +185,13 @@ void ResultsFile::forget_rows() const {
   impl_->forget_rows();
 }
 
-std::vector<RealizationSummary> ResultsFile::realizations(Realizations which) const {
+std::vector<RealizationSummary> ResultsFile::realizations(Realizations selection) const {
   return naming_file(impl_->path, [&] {
     std::vector<RealizationSummary> all;
     for (std::uint32_t p = 0; p < study().points.size(); ++p) {
       for (std::uint32_t r = 0; r < study().realizations; ++r) {
-        if (which == Realizations::of_its_share && !in_share(shard(), study(), {p, r})) continue;
+        if (selection == Realizations::of_its_share && !in_share(shard(), study(), {p, r}))
+          continue;
         RealizationSummary summary{.id = {p, r}, .reason = {}};
         const PointTables& tables = impl_->tables(p);
         summary.status = static_cast<RealizationStatus>(tables.statuses.at(r));
@@ -263,20 +264,20 @@ std::vector<RealizationValues> ResultsFile::fittings(std::uint32_t point) const 
     const std::string folder = std::string(fitting_folder) + "/" + point_name(point);
     if (!exists(impl_->file(), folder)) return all;
     const Hdf5Handle group = open_group(impl_->file(), folder);
-    const Shape each{study().realizations};
+    const Shape extent{study().realizations};
     for (const FittingColumn& column : fitting_columns)
       all.push_back({{column.name, column.units, column.long_name, "jostle"},
-                     read_numbers<double>(group, column.name, &each)});
+                     read_numbers<double>(group, column.name, &extent)});
     return all;
   });
 }
 
 std::optional<MotionRecords> ResultsFile::motion(std::uint32_t point) const {
   return naming_file(impl_->path, [&]() -> std::optional<MotionRecords> {
-    const StudyPoint& at = study().points.at(point);
+    const StudyPoint& study_point = study().points.at(point);
     const std::string folder = std::string(motion_folder) + "/" + point_name(point);
-    if (!at.motion || !exists(impl_->file(), folder)) return std::nullopt;
-    MotionRecords records(*at.motion, at.n_spheres, study().realizations);
+    if (!study_point.motion || !exists(impl_->file(), folder)) return std::nullopt;
+    MotionRecords records(*study_point.motion, study_point.n_spheres, study().realizations);
     read_motion_records(open_group(impl_->file(), folder), records);
     return records;
   });

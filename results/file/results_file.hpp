@@ -29,7 +29,7 @@ struct Series {
   std::uint32_t n_realizations = 0;
   std::vector<double> values;  // [n_taps, n_realizations]; NaN where there is none
 
-  double at(std::uint64_t tap, std::uint32_t realization) const {
+  double value(std::uint64_t tap, std::uint32_t realization) const {
     return values[tap * n_realizations + realization];
   }
 };
@@ -96,7 +96,7 @@ class ResultsFile {
   const std::string& run_id() const;
 
   /// Every (point, realization), points outermost; or those of its share alone.
-  std::vector<RealizationSummary> realizations(Realizations which = Realizations::all) const;
+  std::vector<RealizationSummary> realizations(Realizations selection = Realizations::all) const;
   /// The observables, then the diagnostics of the engine.
   std::vector<Series> series(std::uint32_t point) const;
   /// Labels of the same.

@@ -87,16 +87,16 @@ class ResultsFile::Impl {
   std::size_t n_columns(std::uint32_t point) const { return study.points.at(point).n_columns(); }
 
   /// A snapshot's height_profiles[which], with what pads it.
-  std::span<const double> profile(RealizationId id, std::size_t snapshot, std::size_t which) {
-    const std::size_t n_bins = tables(id.point).n_bins[which];
+  std::span<const double> profile(RealizationId id, std::size_t snapshot, std::size_t index) {
+    const std::size_t n_bins = tables(id.point).n_bins[index];
     const std::uint64_t n_taps = study.points.at(id.point).snapshots.taps.size();
     if (n_bins == 0) return {};
     const Shape all{n_taps, study.realizations, n_bins};
     const std::uint64_t n_a_block = chunk_along_first(all)[0];
     const std::uint64_t first = snapshot / n_a_block * n_a_block;
-    const auto& block = profile_blocks_[which].get({id.point, first}, [&] {
+    const auto& block = profile_blocks_[index].get({id.point, first}, [&] {
       const Hdf5Handle group = open_group(file(), "snapshots/" + point_name(id.point));
-      return read_block(group, height_profiles[which].name, {first, 0, 0},
+      return read_block(group, height_profiles[index].name, {first, 0, 0},
                         {std::min(n_a_block, n_taps - first), study.realizations, n_bins});
     });
     const std::size_t cell = (snapshot - first) * study.realizations + id.realization;

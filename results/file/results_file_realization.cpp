@@ -28,8 +28,8 @@ class ResultsFile::Stored : public StoredRealization {
   }
   void read_rows(std::uint64_t first, std::span<double> rows) override;
   std::vector<SnapshotOutline> snapshots() override;
-  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t which) override;
-  std::vector<double> profile(std::uint64_t tap, std::size_t which) override;
+  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t index) override;
+  std::vector<double> profile(std::uint64_t tap, std::size_t index) override;
   std::vector<Contact> contacts(std::uint64_t tap) override;
 
  private:
@@ -83,9 +83,9 @@ std::vector<SnapshotOutline> ResultsFile::Stored::snapshots() {
   });
 }
 
-std::vector<Vec3> ResultsFile::Stored::vectors(std::uint64_t tap, std::size_t which) {
+std::vector<Vec3> ResultsFile::Stored::vectors(std::uint64_t tap, std::size_t index) {
   if (content_ == Content::without_snapshots) return {};
-  return naming_file(impl_.path, [&] { return impl_.frames(id_).vectors(tap, which); });
+  return naming_file(impl_.path, [&] { return impl_.frames(id_).vectors(tap, index); });
 }
 
 std::vector<Contact> ResultsFile::Stored::contacts(std::uint64_t tap) {
@@ -93,15 +93,15 @@ std::vector<Contact> ResultsFile::Stored::contacts(std::uint64_t tap) {
   return naming_file(impl_.path, [&] { return impl_.frames(id_).network().contacts(tap); });
 }
 
-std::vector<double> ResultsFile::Stored::profile(std::uint64_t tap, std::size_t which) {
+std::vector<double> ResultsFile::Stored::profile(std::uint64_t tap, std::size_t index) {
   return naming_file(impl_.path, [&]() -> std::vector<double> {
     const auto& taps = point().snapshots.taps;
     const auto found = std::ranges::lower_bound(taps, tap);
     if (content_ == Content::without_snapshots || found == taps.end() || *found != tap) return {};
-    auto bins = impl_.profile(id_, static_cast<std::size_t>(found - taps.begin()), which);
+    auto bins = impl_.profile(id_, static_cast<std::size_t>(found - taps.begin()), index);
     // The last bin of a profile holds spheres: what follows is padding, or none was kept.
     const auto is_none = [&](double value) {
-      return std::isnan(value) || value == height_profiles[which].padding;
+      return std::isnan(value) || value == height_profiles[index].padding;
     };
     while (!bins.empty() && is_none(bins.back())) bins = bins.first(bins.size() - 1);
     return {bins.begin(), bins.end()};

@@ -46,11 +46,11 @@ void write_hdf5(const std::string& path, const FileContent& content) {
 }  // namespace
 
 void write_results(const std::string& path, const FileContent& content,
-                   const std::function<void()>& before) {
+                   const std::function<void()>& prepare) {
   TemporaryFile temporary(path);
   naming_file(temporary.name(), [&] { write_hdf5(temporary.name(), content); });
   seal(temporary.name());
-  temporary.publish(before);
+  temporary.publish(prepare);
 }
 
 }  // namespace jostle::inline results

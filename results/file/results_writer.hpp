@@ -24,11 +24,11 @@ struct FileContent {
   StoringProgress progress = {};
 };
 
-/// Writes a whole results file and publishes it under `path`; `before` is called when all has been
+/// Writes a whole results file and publishes it under `path`; `prepare` is called when all has been
 /// written, before what was there is replaced. In memory it holds some 32 MB of
 /// the series of a point, a snapshot, and about 1 kB for every realization and 500 bytes for every
 /// snapshot of a point. Throws ResultsError.
 void write_results(const std::string& path, const FileContent& content,
-                   const std::function<void()>& before = {});
+                   const std::function<void()>& prepare = {});
 
 }  // namespace jostle::inline results

@@ -41,8 +41,8 @@ void write_texts_along(hid_t group, const NamedTexts& columns) {
   };
   const Hdf5Handle axis = write(columns.front());
   make_axis(axis, columns.front().first);
-  const Hdf5Handle* const along[] = {&axis};
-  for (std::size_t i = 1; i < columns.size(); ++i) attach_axes(write(columns[i]), along);
+  const Hdf5Handle* const axes[] = {&axis};
+  for (std::size_t i = 1; i < columns.size(); ++i) attach_axes(write(columns[i]), axes);
 }
 
 void write_columns(hid_t group, const StudyPoint& point) {
@@ -54,10 +54,11 @@ void write_columns(hid_t group, const StudyPoint& point) {
   const auto labels = [&](const std::vector<Column>& columns, const char* names,
                           const std::string& prefix) -> NamedTexts {
     return {
-        {names, texts(columns, [](const Column& one) { return one.name; })},
-        {prefix + "units", texts(columns, [](const Column& one) { return one.units; })},
-        {prefix + "long_names", texts(columns, [](const Column& one) { return one.long_name; })},
-        {prefix + "sources", texts(columns, [](const Column& one) { return one.source; })}};
+        {names, texts(columns, [](const Column& column) { return column.name; })},
+        {prefix + "units", texts(columns, [](const Column& column) { return column.units; })},
+        {prefix + "long_names",
+         texts(columns, [](const Column& column) { return column.long_name; })},
+        {prefix + "sources", texts(columns, [](const Column& column) { return column.source; })}};
   };
   write_texts_along(group, labels(point.observables, "observables", ""));
   if (point.diagnostics == unnamed_diagnostics()) return;
@@ -65,11 +66,12 @@ void write_columns(hid_t group, const StudyPoint& point) {
   const auto add = [&](const char* name, auto get) {
     own.emplace_back(std::string(diagnostics_prefix) + name, texts(point.diagnostics, get));
   };
-  add("shown",
-      [](const Column& one) { return std::string(shown_names[static_cast<int>(one.shown)]); });
-  add("decimals", [](const Column& one) { return fmt::to_string(one.decimals); });
-  add("if_any", [](const Column& one) { return one.if_any; });
-  add("if_none", [](const Column& one) { return one.if_none; });
+  add("shown", [](const Column& column) {
+    return std::string(shown_names[static_cast<int>(column.shown)]);
+  });
+  add("decimals", [](const Column& column) { return fmt::to_string(column.decimals); });
+  add("if_any", [](const Column& column) { return column.if_any; });
+  add("if_none", [](const Column& column) { return column.if_none; });
   write_texts_along(group, own);
   write_attribute(group, diagnostics_unit, point.unit);
 }
@@ -145,9 +147,9 @@ std::string coordinate_name(const std::string& pointer, const Texts& pointers) {
   const auto last_token = [](const std::string& path) { return path.substr(path.rfind('/') + 1); };
   const std::string name = last_token(pointer);
   const Texts taken = {"point", "label", "id", "pointer", "value"};
-  const auto same = [&](const std::string& other) { return last_token(other) == name; };
+  const auto is_same = [&](const std::string& candidate) { return last_token(candidate) == name; };
   const bool is_index = name.find_first_not_of("0123456789") == std::string::npos;
-  if (!is_index && std::ranges::count_if(pointers, same) == 1 &&
+  if (!is_index && std::ranges::count_if(pointers, is_same) == 1 &&
       std::ranges::find(taken, name) == taken.end())
     return name;
   std::string whole = pointer.substr(1);
@@ -249,11 +251,11 @@ void write_provenance(hid_t file, const FileContent& content, RunState state) {
   std::iota(numbers.begin(), numbers.end(), 0u);
   const Hdf5Handle processes = write_numbers(group, "process", numbers);
   make_axis(processes, "process");
-  const Hdf5Handle* const along[] = {&processes};
+  const Hdf5Handle* const axes[] = {&processes};
   for (const auto& [name, field] : provenance_fields) {
     Texts texts;
     for (const Provenance& process : content.provenance) texts.push_back(process.*field);
-    attach_axes(write_texts(group, name, {texts.size()}, texts), along);
+    attach_axes(write_texts(group, name, {texts.size()}, texts), axes);
   }
 }
 

@@ -100,9 +100,9 @@ void write_table(hid_t parent, const Table& table, const Provenance& provenance)
   }
   for (const Quantity& quantity : table.quantities) {
     const Hdf5Handle dataset = write_quantity(group, table, quantity);
-    std::vector<const Hdf5Handle*> along;
-    for (const std::string& name : quantity.axes) along.push_back(&axes.at(name));
-    attach_axes(dataset, along);
+    std::vector<const Hdf5Handle*> scales;
+    for (const std::string& name : quantity.axes) scales.push_back(&axes.at(name));
+    attach_axes(dataset, scales);
   }
 }
 
@@ -131,8 +131,8 @@ Quantity read_quantity(hid_t group, const std::string& name, const std::vector<M
     quantity.axes = {name};
     return quantity;
   }
-  for (const auto& along : axes_of(dataset)) {
-    for (const haddr_t address : along) {
+  for (const auto& scales : axes_of(dataset)) {
+    for (const haddr_t address : scales) {
       const auto axis = std::ranges::find(members, address, &Member::address);
       if (axis == members.end()) throw Hdf5Error(name + " has an axis outside its table");
       quantity.axes.push_back(axis->name);
@@ -177,9 +177,9 @@ template <class Visit>
 void for_each_table(hid_t group, const std::string& path, Walk& walk, const Visit& visit) {
   if (checked(H5Aexists(group, quantities_attribute)) > 0) return visit(group, path);
   for (const Member& member : members_of(group)) {
-    const std::string below = path.empty() ? member.name : path + "/" + member.name;
-    walk.enter(member, below);
-    for_each_table(open_group(group, member.name), below, walk, visit);
+    const std::string path_below = path.empty() ? member.name : path + "/" + member.name;
+    walk.enter(member, path_below);
+    for_each_table(open_group(group, member.name), path_below, walk, visit);
   }
 }
 
@@ -187,8 +187,8 @@ void for_each_table(hid_t group, const std::string& path, Walk& walk, const Visi
 
 void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
                   const Provenance& provenance, const Patience& patience) {
-  const TableGroup one{group, {tables.begin(), tables.end()}};
-  store_tables(path, std::span(&one, 1), provenance, patience);
+  const TableGroup table_group{group, {tables.begin(), tables.end()}};
+  store_tables(path, std::span(&table_group, 1), provenance, patience);
 }
 
 void store_tables(const std::string& named, std::span<const TableGroup> groups,

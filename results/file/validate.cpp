@@ -21,8 +21,8 @@ constexpr std::uint64_t most_total_taps = std::uint64_t{1} << 40;
 constexpr std::size_t deepest_nesting = 64, longest_name = 200, longest_text = 10'000;
 constexpr std::size_t longest_label = 1u << 24;  // longest label; values can be whole protocols
 
-void require(bool sound, const std::string& what) {
-  if (!sound) throw Hdf5Error(printable(what) + ": not written by jostle");
+void require(bool sound, const std::string& requirement) {
+  if (!sound) throw Hdf5Error(printable(requirement) + ": not written by jostle");
 }
 
 bool is_name(const std::string& name) {

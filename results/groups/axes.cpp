@@ -55,10 +55,10 @@ void write_label(hid_t dataset, const Column& label) {
 }
 
 Shape chunk_along_first(const Shape& shape) {
-  hsize_t others = 1;
-  for (std::size_t i = 1; i < shape.size(); ++i) others *= shape[i];
+  hsize_t n_others = 1;
+  for (std::size_t i = 1; i < shape.size(); ++i) n_others *= shape[i];
   Shape chunk = shape;
-  chunk[0] = std::clamp<hsize_t>(most_numbers_per_chunk / std::max<hsize_t>(others, 1), 1,
+  chunk[0] = std::clamp<hsize_t>(most_numbers_per_chunk / std::max<hsize_t>(n_others, 1), 1,
                                  std::max<hsize_t>(shape[0], 1));
   return chunk;
 }
@@ -74,10 +74,10 @@ EnsembleWriter::EnsembleWriter(hid_t group, const std::vector<Column>& labels,
                                std::uint64_t n_taps) {
   const Hdf5Handle taps = write_tap_axis(group, n_taps);
   for (const Column& label : labels) {
-    const auto moment = [&](const char* ending, const std::string& what) {
+    const auto moment = [&](const char* ending, const std::string& meaning) {
       return labelled_column<double>(
           group, taps, n_taps,
-          {label.name + ending, label.units, what + label.long_name, label.source});
+          {label.name + ending, label.units, meaning + label.long_name, label.source});
     };
     columns_.push_back(
         {moment("_mean", "mean of "),

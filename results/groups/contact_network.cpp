@@ -30,53 +30,54 @@ class ContactWriter {
         normal_(group, "normal", {n, 3}, chunk_along_first({n, 3})),
         tangential_force_(group, "tangential_force", {n, 3}, chunk_along_first({n, 3})) {}
 
-  void write(std::uint64_t from, std::span<const Contact> contacts) {
-    write_numbers_of(first_, from, contacts, &Contact::first);
-    write_numbers_of(second_, from, contacts, &Contact::second);
-    write_numbers_of(overlap_, from, contacts, &Contact::overlap);
-    write_numbers_of(normal_force_, from, contacts, &Contact::normal_force);
-    write_vectors_of(normal_, from, contacts, &Contact::normal);
-    write_vectors_of(tangential_force_, from, contacts, &Contact::tangential_force);
+  void write(std::uint64_t first, std::span<const Contact> contacts) {
+    write_numbers_of(first_, first, contacts, &Contact::first);
+    write_numbers_of(second_, first, contacts, &Contact::second);
+    write_numbers_of(overlap_, first, contacts, &Contact::overlap);
+    write_numbers_of(normal_force_, first, contacts, &Contact::normal_force);
+    write_vectors_of(normal_, first, contacts, &Contact::normal);
+    write_vectors_of(tangential_force_, first, contacts, &Contact::tangential_force);
   }
 
   void label(const Hdf5Handle& contacts, const Hdf5Handle& directions, std::uint32_t n_spheres,
              const Container& container) {
-    const auto along = [&](const Hdf5Handle& dataset, const Column& label, bool is_vector) {
+    const auto attach = [&](const Hdf5Handle& dataset, const Column& label, bool is_vector) {
       write_label(dataset, label);
       const Hdf5Handle* const axes[] = {&contacts, &directions};
       attach_axes(dataset, std::span(axes, is_vector ? 2 : 1));
     };
     const std::string source = "jostle";
-    along(first_.dataset(), {"first", "1", "number of the sphere", source}, false);
-    along(
+    attach(first_.dataset(), {"first", "1", "number of the sphere", source}, false);
+    attach(
         second_.dataset(),
         {"second", "1", "number of the other sphere, or n_spheres + w: wall w of `walls`", source},
         false);
     write_attribute(second_.dataset(), "n_spheres", n_spheres);
     write_attribute(second_.dataset(), "walls", wall_names(container));
-    along(overlap_.dataset(), {"overlap", "diameter", "overlap", source}, false);
-    along(normal_force_.dataset(),
-          {"normal_force", "m g", "normal force; positive where they press on each other", source},
-          false);
-    along(normal_.dataset(), {"normal", "1", "unit vector from second to first", source}, true);
-    along(tangential_force_.dataset(),
-          {"tangential_force", "m g", "tangential force on first", source}, true);
+    attach(overlap_.dataset(), {"overlap", "diameter", "overlap", source}, false);
+    attach(normal_force_.dataset(),
+           {"normal_force", "m g", "normal force; positive where they press on each other", source},
+           false);
+    attach(normal_.dataset(), {"normal", "1", "unit vector from second to first", source}, true);
+    attach(tangential_force_.dataset(),
+           {"tangential_force", "m g", "tangential force on first", source}, true);
   }
 
  private:
   template <class Number>
-  static void write_numbers_of(RowsDataset<Number>& dataset, std::uint64_t from,
+  static void write_numbers_of(RowsDataset<Number>& dataset, std::uint64_t first,
                                std::span<const Contact> contacts, Number Contact::*field) {
     std::vector<Number> values;
-    for (const Contact& one : contacts) values.push_back(one.*field);
-    dataset.write(from, values);
+    for (const Contact& contact : contacts) values.push_back(contact.*field);
+    dataset.write(first, values);
   }
-  static void write_vectors_of(RowsDataset<double>& dataset, std::uint64_t from,
+  static void write_vectors_of(RowsDataset<double>& dataset, std::uint64_t first,
                                std::span<const Contact> contacts, Vec3 Contact::*field) {
     std::vector<double> values;
-    for (const Contact& one : contacts)
-      for (const double x : {(one.*field).x, (one.*field).y, (one.*field).z}) values.push_back(x);
-    dataset.write(from, values);
+    for (const Contact& contact : contacts)
+      for (const double x : {(contact.*field).x, (contact.*field).y, (contact.*field).z})
+        values.push_back(x);
+    dataset.write(first, values);
   }
 
   RowsDataset<std::uint32_t> first_, second_;
@@ -173,20 +174,20 @@ std::vector<Contact> ContactNetwork::contacts(std::uint64_t tap) const {
   const Values overlaps = read(overlap_, 1, Values{}), forces = read(normal_force_, 1, Values{}),
                normals = read(normal_, 3, Values{}),
                tangential = read(tangential_force_, 3, Values{});
-  const auto vector = [](const Values& of, std::size_t k) {
-    return Vec3{of[3 * k], of[3 * k + 1], of[3 * k + 2]};
+  const auto vector = [](const Values& values, std::size_t k) {
+    return Vec3{values[3 * k], values[3 * k + 1], values[3 * k + 2]};
   };
   bool sound = true;
   for (std::size_t k = 0; k < n; ++k) {
-    Contact& one = contacts[k];
-    one = {firsts[k], seconds[k],         overlaps[k],
-           forces[k], vector(normals, k), vector(tangential, k)};
-    const std::uint64_t others = std::uint64_t{n_spheres_} + n_walls_;
-    sound = sound && one.first < n_spheres_ && one.first < one.second && one.second < others &&
-            is_position({one.overlap, one.normal_force, 0}) && is_position(one.normal) &&
-            is_position(one.tangential_force);
+    Contact& contact = contacts[k];
+    contact = {firsts[k], seconds[k],         overlaps[k],
+               forces[k], vector(normals, k), vector(tangential, k)};
+    const std::uint64_t n_bodies = std::uint64_t{n_spheres_} + n_walls_;
+    sound = sound && contact.first < n_spheres_ && contact.first < contact.second &&
+            contact.second < n_bodies && is_position({contact.overlap, contact.normal_force, 0}) &&
+            is_position(contact.normal) && is_position(contact.tangential_force);
     sound = sound && (k == 0 || std::tuple(contacts[k - 1].first, contacts[k - 1].second) <
-                                    std::tuple(one.first, one.second));
+                                    std::tuple(contact.first, contact.second));
   }
   if (!sound)
     throw Hdf5Error(fmt::format("the snapshot of tap {} has a contact that is none", tap));

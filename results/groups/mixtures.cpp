@@ -38,31 +38,32 @@ void write_kinds(hid_t group, const std::vector<SphereKind>& kinds) {
   const Hdf5Handle axis = write_texts(group, kind_names, {names.size()}, names);
   make_axis(axis, kind_names);
   write_attribute(axis, "long_name", std::string("kinds of spheres"));
-  const Hdf5Handle* const along[] = {&axis};
+  const Hdf5Handle* const axes[] = {&axis};
   const Hdf5Handle density = write_numbers(group, kind_densities, densities);
   write_label(density, {kind_densities, "1", "density relative to a sphere of mass 1", "jostle"});
-  attach_axes(density, along);
+  attach_axes(density, axes);
 }
 
 void write_mixture(hid_t group, const PointSpheres& mixture) {
   write_kinds(group, mixture.kinds);
   const Shape shape{mixture.kind_of.size()};
   const Hdf5Handle spheres = write_bare_axis(group, sphere_axis, shape[0]);
-  const Hdf5Handle* const along[] = {&spheres};
+  const Hdf5Handle* const axes[] = {&spheres};
   const Hdf5Handle kind = write_numbers<std::uint32_t>(group, sphere_kinds, shape, mixture.kind_of,
                                                        chunk_along_first(shape));
   write_label(kind, {sphere_kinds, "1", "number of the kind of every sphere, an index of `name`",
                      "jostle"});
-  attach_axes(kind, along);
+  attach_axes(kind, axes);
   if (mixture.drawn()) return;
   const Hdf5Handle diameter = write_numbers<double>(group, sphere_diameters, shape,
                                                     mixture.diameters, chunk_along_first(shape));
   write_label(diameter, diameter_label());
-  attach_axes(diameter, along);
+  attach_axes(diameter, axes);
 }
 
-void require(bool sound, std::uint32_t point, const std::string& what) {
-  if (!sound) throw Hdf5Error("/" + group_name(point) + " " + what + ": not written by jostle");
+void require(bool sound, std::uint32_t point, const std::string& requirement) {
+  if (!sound)
+    throw Hdf5Error("/" + group_name(point) + " " + requirement + ": not written by jostle");
 }
 
 /// Limits the spheres of all points together, so that a small file does not fill the memory.
@@ -108,8 +109,8 @@ DrawnDiameters::DrawnDiameters(hid_t file, std::uint32_t point, std::uint32_t n_
   const Hdf5Handle spheres = exists(group, sphere_axis)
                                  ? open_dataset(group, sphere_axis)
                                  : write_bare_axis(group, sphere_axis, n_spheres);
-  const Hdf5Handle* const along[] = {&realizations, &spheres};
-  attach_axes(dataset_.dataset(), along);
+  const Hdf5Handle* const axes[] = {&realizations, &spheres};
+  attach_axes(dataset_.dataset(), axes);
 }
 
 void DrawnDiameters::write(std::uint32_t realization, const std::vector<double>& diameters) {

@@ -160,9 +160,9 @@ void read_motion_records(hid_t group, MotionRecords& records) {
     const Shape shape = shape_of_quantity(motion_quantities[q], records);
     records.values[q] = read_numbers<double>(group, motion_quantities[q].name, &shape);
   }
-  const Shape heights = shape_of_heights(records), each{records.n_realizations};
+  const Shape heights = shape_of_heights(records), extent{records.n_realizations};
   records.layer_height = read_numbers<double>(group, "layer_height", &heights);
-  records.largest_step = read_numbers<double>(group, "largest_step", &each);
+  records.largest_step = read_numbers<double>(group, "largest_step", &extent);
 }
 
 }  // namespace jostle::inline results

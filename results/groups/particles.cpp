@@ -31,9 +31,9 @@ void write_box(hid_t group, const Container& container, double highest) {
 
 /// An element of H5MD, [n_steps, n_spheres, 3], whose frames come one by one.
 template <class VectorsAt>
-void write_element(hid_t group, const SphereVector& what, std::uint32_t n_spheres,
+void write_element(hid_t group, const SphereVector& vector, std::uint32_t n_spheres,
                    const std::vector<std::uint64_t>& taps, const VectorsAt& vectors_at) {
-  const Hdf5Handle element = create_group(group, what.name);
+  const Hdf5Handle element = create_group(group, vector.name);
   const Hdf5Handle step = write_numbers(element, "step", taps);
   write_label(step, {"step", "1", "number of taps; 0 is the start", ""});
   make_axis(step, "step");
@@ -44,7 +44,7 @@ void write_element(hid_t group, const SphereVector& what, std::uint32_t n_sphere
     const std::vector<Vec3> vectors = vectors_at(taps[frame]);
     value.write(frame, {&vectors[0].x, 3 * vectors.size()});
   }
-  write_label(value.dataset(), {"value", what.units, what.long_name, ""});
+  write_label(value.dataset(), {"value", vector.units, vector.long_name, ""});
   const Hdf5Handle* const axes[] = {&step, &spheres, &directions};
   attach_axes(value.dataset(), axes);
 }
@@ -64,15 +64,15 @@ void write_particles(hid_t file, const std::string& name, const Container& conta
                      std::uint32_t n_spheres, const std::vector<SnapshotOutline>& snapshots,
                      StoredRealization& realization) {
   std::vector<ContactFrame> frames;
-  for (const SnapshotOutline& one : snapshots)
-    if (one.n_spheres[kept_positions] > 0) frames.push_back({one.tap, one.n_contacts});
+  for (const SnapshotOutline& outline : snapshots)
+    if (outline.n_spheres[kept_positions] > 0) frames.push_back({outline.tap, outline.n_contacts});
   if (frames.empty()) return;
   const Hdf5Handle group = create_group(file, "particles/" + name);
   double highest = 0;
   for (std::size_t k = 0; k < n_sphere_vectors; ++k) {
     std::vector<std::uint64_t> taps;
-    for (const SnapshotOutline& one : snapshots)
-      if (one.n_spheres[k] > 0) taps.push_back(one.tap);
+    for (const SnapshotOutline& outline : snapshots)
+      if (outline.n_spheres[k] > 0) taps.push_back(outline.tap);
     const auto vectors_at = [&](std::uint64_t tap) {
       std::vector<Vec3> vectors = realization.vectors(tap, k);
       if (vectors.size() != n_spheres) throw Hdf5Error(name + ": a snapshot of other spheres");
@@ -102,8 +102,8 @@ ParticleFrames::ParticleFrames(hid_t file, const std::string& name, std::uint32_
   network_ = ContactNetwork(group, n_spheres, container);
 }
 
-std::vector<Vec3> ParticleFrames::vectors(std::uint64_t tap, std::size_t which) const {
-  const auto& [taps, value] = elements_[which];
+std::vector<Vec3> ParticleFrames::vectors(std::uint64_t tap, std::size_t index) const {
+  const auto& [taps, value] = elements_[index];
   const auto found = std::ranges::find(taps, tap);
   if (found == taps.end()) return {};
   std::vector<Vec3> vectors(n_spheres_);
@@ -111,7 +111,7 @@ std::vector<Vec3> ParticleFrames::vectors(std::uint64_t tap, std::size_t which) 
             static_cast<hsize_t>(found - taps.begin()), vectors.data());
   if (!std::ranges::all_of(vectors, is_position))
     throw Hdf5Error(fmt::format("the snapshot of tap {} has a {} that is none", tap,
-                                sphere_vectors[which].name));
+                                sphere_vectors[index].name));
   return vectors;
 }
 

@@ -30,9 +30,9 @@ class ParticleFrames {
   ParticleFrames(hid_t file, const std::string& name, std::uint32_t n_spheres,
                  const Container& container);
   /// With a frame of sphere_vectors[which].
-  const std::vector<std::uint64_t>& taps(std::size_t which) const { return elements_[which].taps; }
+  const std::vector<std::uint64_t>& taps(std::size_t index) const { return elements_[index].taps; }
   /// [n_spheres]; empty where the tap is none of taps(which).
-  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t which) const;
+  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t index) const;
   const ContactNetwork& network() const { return network_; }
 
  private:

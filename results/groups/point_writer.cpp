@@ -131,12 +131,12 @@ void PointWriter::write_series(hid_t group, const Hdf5Handle& taps,
                                const Hdf5Handle& realizations) {
   const std::uint64_t n_taps = std::max<std::uint64_t>(1, std::ranges::max(rows_));
   const Shape shape{n_taps, n_realizations_};
-  const Hdf5Handle* const both[] = {&taps, &realizations};
+  const Hdf5Handle* const axes[] = {&taps, &realizations};
   std::vector<RowsDataset<double>> series;
   for (const Column& label : labels_) {
     series.emplace_back(group, label.name, shape, chunk_along_first(shape));
     write_label(series.back().dataset(), label);
-    attach_axes(series.back().dataset(), both);
+    attach_axes(series.back().dataset(), axes);
   }
   EnsembleWriter ensemble(group_under("ensemble"), labels_, n_taps);
   const std::uint64_t a_block = rows_a_block(n_realizations_, labels_.size());
@@ -162,33 +162,33 @@ void PointWriter::write_observables() {
   const Hdf5Handle taps =
       write_tap_axis(group, std::max<std::uint64_t>(1, std::ranges::max(rows_)));
   const Hdf5Handle realizations = write_realization_axis(group, n_realizations_);
-  const Hdf5Handle* const one[] = {&realizations};
+  const Hdf5Handle* const axes[] = {&realizations};
   write_series(group, taps, realizations);
   const Hdf5Handle status = write_numbers(group, "status", statuses_);
   const std::uint8_t flags[] = {0, 1, 2, 3};
   write_attribute<std::uint8_t>(status, "flag_values", flags);
   write_attribute(status, "flag_meanings", std::string("missing running done failed"));
   write_attribute(status, "long_name", std::string("how far the realization is"));
-  attach_axes(status, one);
+  attach_axes(status, axes);
   const Hdf5Handle reason = write_texts(group, "reason", {n_realizations_}, reasons_);
   write_attribute(reason, "long_name", std::string("why the realization failed"));
-  attach_axes(reason, one);
+  attach_axes(reason, axes);
   const Hdf5Handle rows = write_numbers(group, "rows", rows_);
   write_attribute(rows, "long_name", std::string("taps recorded, the start included"));
-  attach_axes(rows, one);
+  attach_axes(rows, axes);
   std::vector<std::uint64_t> keys;
   for (std::uint32_t r = 0; r < n_realizations_; ++r)
     keys.push_back(
         static_cast<std::uint64_t>(stream_key(point_.seed, point_.id, r, Purpose::trials)));
   const Hdf5Handle key = write_numbers(group, "trial_key", keys);
   write_attribute(key, "long_name", std::string("Philox key of the realization's trials"));
-  attach_axes(key, one);
+  attach_axes(key, axes);
 }
 
 void PointWriter::write_snapshots() {
   if (point_.snapshots.taps.empty()) return;
-  statistics_.profile = [this](std::size_t which, std::size_t tap, std::uint32_t realization) {
-    return realizations_[realization]->profile(point_.snapshots.taps[tap], which);
+  statistics_.profile = [this](std::size_t index, std::size_t tap, std::uint32_t realization) {
+    return realizations_[realization]->profile(point_.snapshots.taps[tap], index);
   };
   write_snapshot_statistics(group_under("snapshots"), point_, n_realizations_, statistics_);
 }
@@ -225,9 +225,9 @@ void PointWriter::write_timing() {
   const Hdf5Handle group = group_under("timing");
   const Hdf5Handle realizations = write_realization_axis(group, n_realizations_);
   const Hdf5Handle* const axes[] = {&realizations};
-  const auto write = [&](const Column& label, auto&& of) {
-    std::vector<std::decay_t<decltype(of(Work{}))>> numbers;
-    for (const Work& work : work_) numbers.push_back(of(work));
+  const auto write = [&](const Column& label, auto&& value_of) {
+    std::vector<std::decay_t<decltype(value_of(Work{}))>> numbers;
+    for (const Work& work : work_) numbers.push_back(value_of(work));
     const Hdf5Handle written = write_numbers(group, label.name.c_str(), numbers);
     write_label(written, label);
     attach_axes(written, axes);

@@ -69,12 +69,13 @@ class StatisticsWriter {
                      arms = write_bare_axis(group_, "arm", 3),
                      force = write_bare_axis(group_, "force", 3);
     std::vector<double> normal, friction, moment;
-    for (const auto& one : forces) {
-      for (std::size_t k = 0; k < 9; ++k) moment.push_back(one ? one->moment[k] : not_a_number);
+    for (const auto& bed_forces : forces) {
+      for (std::size_t k = 0; k < 9; ++k)
+        moment.push_back(bed_forces ? bed_forces->moment[k] : not_a_number);
       for (std::size_t w = 0; w < n_walls; ++w) {
         const WallForce wall =
-            one ? one->walls.at(w)
-                : WallForce{not_a_number, {not_a_number, not_a_number, not_a_number}};
+            bed_forces ? bed_forces->walls.at(w)
+                       : WallForce{not_a_number, {not_a_number, not_a_number, not_a_number}};
         normal.push_back(wall.normal);
         for (const double x : {wall.friction.x, wall.friction.y, wall.friction.z})
           friction.push_back(x);
@@ -93,9 +94,9 @@ class StatisticsWriter {
   }
 
  private:
-  void write_profile(std::size_t which, const SnapshotStatistics& statistics,
+  void write_profile(std::size_t index, const SnapshotStatistics& statistics,
                      const Hdf5Handle& heights, std::size_t n_bins) {
-    const HeightProfile& profile = height_profiles[which];
+    const HeightProfile& profile = height_profiles[index];
     const Shape all{n_taps_, n_realizations_, n_bins}, chunk = chunk_along_first(all);
     RowsDataset<double> dataset(group_, profile.name, all, chunk);
     std::vector<double> values;
@@ -103,7 +104,7 @@ class StatisticsWriter {
       values.clear();
       for (std::size_t tap = first; tap < std::min<std::size_t>(first + chunk[0], n_taps_); ++tap) {
         for (std::uint32_t r = 0; r < n_realizations_; ++r) {
-          const std::vector<double> bins = statistics.profile(which, tap, r);
+          const std::vector<double> bins = statistics.profile(index, tap, r);
           const double absent = bins.empty() ? not_a_number : profile.padding;
           values.insert(values.end(), bins.begin(), bins.end());
           values.insert(values.end(), n_bins - bins.size(), absent);
@@ -118,10 +119,10 @@ class StatisticsWriter {
   }
 
   /// Along taps, realizations and what follows them.
-  void write_along(const Column& label, const std::vector<double>& values, const Shape& others,
-                   std::vector<const Hdf5Handle*> axes) {
+  void write_along(const Column& label, const std::vector<double>& values,
+                   const Shape& other_extents, std::vector<const Hdf5Handle*> axes) {
     Shape shape{n_taps_, n_realizations_};
-    shape.insert(shape.end(), others.begin(), others.end());
+    shape.insert(shape.end(), other_extents.begin(), other_extents.end());
     const Hdf5Handle dataset =
         write_numbers<double>(group_, label.name, shape, values, chunk_along_first(shape));
     write_label(dataset, label);
@@ -158,10 +159,12 @@ std::vector<std::optional<BedForces>> read_bed_forces(hid_t group, const StudyPo
   std::vector<std::optional<BedForces>> forces(n_taps * n_realizations);
   for (std::size_t cell = 0; cell < forces.size(); ++cell) {
     if (std::isnan(moment[9 * cell])) continue;
-    BedForces& one = forces[cell].emplace();
-    std::copy_n(moment.begin() + static_cast<std::ptrdiff_t>(9 * cell), 9, one.moment.begin());
+    BedForces& bed_forces = forces[cell].emplace();
+    std::copy_n(moment.begin() + static_cast<std::ptrdiff_t>(9 * cell), 9,
+                bed_forces.moment.begin());
     for (std::size_t w = cell * n_walls; w < (cell + 1) * n_walls; ++w)
-      one.walls.push_back({normal[w], {friction[3 * w], friction[3 * w + 1], friction[3 * w + 2]}});
+      bed_forces.walls.push_back(
+          {normal[w], {friction[3 * w], friction[3 * w + 1], friction[3 * w + 2]}});
   }
   return forces;
 }

@@ -17,7 +17,7 @@ struct SnapshotStatistics {
   std::vector<std::optional<BedForces>> forces;  // [n_taps, n_realizations]
   /// height_profiles[which] of a snapshot tap, by its place among them, and a realization; empty
   /// where there is none. Asked for twice, in the order of taps.
-  std::function<std::vector<double>(std::size_t which, std::size_t tap, std::uint32_t realization)>
+  std::function<std::vector<double>(std::size_t index, std::size_t tap, std::uint32_t realization)>
       profile;
 };
 

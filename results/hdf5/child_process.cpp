@@ -116,11 +116,12 @@ std::string in_child_process(const std::function<std::string()>& work) {
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (outcome.empty() || status != 0) {
-    const std::string how = WIFSIGNALED(status) ? fmt::format(", signal {}", WTERMSIG(status)) : "";
+    const std::string cause =
+        WIFSIGNALED(status) ? fmt::format(", signal {}", WTERMSIG(status)) : "";
     throw Hdf5Error(
         fmt::format("is damaged or forged: HDF5 crashes when it reads the file{}; restore it from "
                     "a copy",
-                    how));
+                    cause));
   }
   return text_of(outcome);
 }

@@ -26,12 +26,12 @@ class Hdf5Handle {
   using Close = herr_t (*)(hid_t);
 
   Hdf5Handle() = default;
-  Hdf5Handle(hid_t id, Close how) : id_(checked(id)), close_(how) {}
-  Hdf5Handle(Hdf5Handle&& other) noexcept
-      : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Hdf5Handle& operator=(Hdf5Handle&& other) noexcept {
-    std::swap(id_, other.id_);
-    std::swap(close_, other.close_);
+  Hdf5Handle(hid_t id, Close closer) : id_(checked(id)), close_(closer) {}
+  Hdf5Handle(Hdf5Handle&& source) noexcept
+      : id_(std::exchange(source.id_, -1)), close_(source.close_) {}
+  Hdf5Handle& operator=(Hdf5Handle&& source) noexcept {
+    std::swap(id_, source.id_);
+    std::swap(close_, source.close_);
     return *this;
   }
   ~Hdf5Handle() {

@@ -33,10 +33,10 @@ void require_known_filters(hid_t properties, const std::string& name) {
 void require_chunks_within(hid_t properties, const Shape& shape, const std::string& name) {
   std::array<hsize_t, H5S_MAX_RANK> chunk{};
   const int rank = checked(H5Pget_chunk(properties, H5S_MAX_RANK, chunk.data()));
-  bool within = static_cast<std::size_t>(rank) == shape.size();
-  for (std::size_t i = 0; within && i < shape.size(); ++i)
-    within = chunk[i] <= std::max<hsize_t>(shape[i], 1);
-  if (!within) throw Hdf5Error(name + " has chunks larger than itself: not written by jostle");
+  bool is_inside = static_cast<std::size_t>(rank) == shape.size();
+  for (std::size_t i = 0; is_inside && i < shape.size(); ++i)
+    is_inside = chunk[i] <= std::max<hsize_t>(shape[i], 1);
+  if (!is_inside) throw Hdf5Error(name + " has chunks larger than itself: not written by jostle");
 }
 
 }  // namespace

@@ -98,9 +98,9 @@ Shape shape_of_space(hid_t space) {
 }
 
 void require_shape(hid_t parent, const std::string& name, const Shape& shape) {
-  const auto text = [](const Shape& some) {
+  const auto text = [](const Shape& extents_of) {
     std::string extents;
-    for (const hsize_t extent : some)
+    for (const hsize_t extent : extents_of)
       extents.append(extents.empty() ? "" : ", ").append(std::to_string(extent));
     return extents;
   };

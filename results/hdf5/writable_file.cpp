@@ -109,37 +109,37 @@ haddr_t file_end(const H5FD_t* file, H5FD_mem_t) {
 }
 
 /// Beyond what the disk took, zeros.
-herr_t read_bytes_at(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t at, std::size_t n, void* bytes) {
+herr_t read_bytes_at(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t address, std::size_t n, void* bytes) {
   DriverFile& file = driver_file(base);
   write_waiting(file);
-  auto* to = static_cast<std::byte*>(bytes);
+  auto* destination = static_cast<std::byte*>(bytes);
   while (n > 0) {
-    const ssize_t got = ::pread(file.descriptor, to, n, static_cast<off_t>(at));
+    const ssize_t got = ::pread(file.descriptor, destination, n, static_cast<off_t>(address));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) remember(file, errno);
     if (got <= 0) break;
-    to += got;
-    at += static_cast<haddr_t>(got);
+    destination += got;
+    address += static_cast<haddr_t>(got);
     n -= static_cast<std::size_t>(got);
   }
-  std::memset(to, 0, n);
+  std::memset(destination, 0, n);
   return 0;
 }
 
-herr_t write_bytes_at(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t at, std::size_t n,
+herr_t write_bytes_at(H5FD_t* base, H5FD_mem_t, hid_t, haddr_t address, std::size_t n,
                       const void* bytes) {
   constexpr std::size_t most_waiting = 4u << 20;
   DriverFile& file = driver_file(base);
-  const bool joins = at == file.waiting_at + file.waiting.size();
+  const bool joins = address == file.waiting_at + file.waiting.size();
   if (!joins || file.waiting.size() + n > most_waiting) write_waiting(file);
-  if (file.waiting.empty()) file.waiting_at = at;
-  const auto* from = static_cast<const std::byte*>(bytes);
+  if (file.waiting.empty()) file.waiting_at = address;
+  const auto* source = static_cast<const std::byte*>(bytes);
   try {
-    file.waiting.insert(file.waiting.end(), from, from + n);
+    file.waiting.insert(file.waiting.end(), source, source + n);
   } catch (const std::bad_alloc&) {  // these must not pass through HDF5
     remember(file, ENOMEM);
   }
-  file.size = std::max(file.size, at + n);
+  file.size = std::max(file.size, address + n);
   return 0;
 }
 

@@ -28,7 +28,7 @@ constexpr std::size_t most_bytes = 512;  // content of a lock
 constexpr std::string_view storing_word = "storing";
 
 std::string lock_path(const std::string& results_path) {
-  return beside(results_path, ".lock");
+  return path_with_ending(results_path, ".lock");
 }
 
 std::string this_host() {
@@ -72,13 +72,13 @@ bool is_alive(const LockOwner& owner, uid_t lock, SlurmQueue& queue) {
   }
   if (!owner.job || lock != ::getuid()) return true;
   const auto own = this_slurm_job();
-  const bool same = own && own->cluster == owner.job->cluster && own->id == owner.job->id;
+  const bool is_same = own && own->cluster == owner.job->cluster && own->id == owner.job->id;
   // Slurm starts a job again when its last start is over.
-  if (same) return own->restarts <= owner.job->restarts;
+  if (is_same) return own->restarts <= owner.job->restarts;
   return queue.runs(*owner.job).value_or(true);
 }
 
-std::string who(const LockOwner& owner) {
+std::string owner_name(const LockOwner& owner) {
   const std::string process = fmt::format("process {} on host {}", owner.pid, owner.host);
   return owner.job ? fmt::format("{} (Slurm job {})", process, owner.job->name) : process;
 }
@@ -123,7 +123,7 @@ void refuse_living_owner(const LockOwner& owner, bool force) {
   const bool on_other_host = owner.host != this_host();
   if (on_other_host ? force : owner.pid == ::getpid()) return;
   const std::string process =
-      on_other_host ? who(owner) : fmt::format("process {} on this host", owner.pid);
+      on_other_host ? owner_name(owner) : fmt::format("process {} on this host", owner.pid);
   throw Held{process, owner.storing, on_other_host};
 }
 
@@ -236,7 +236,7 @@ OpenedLock try_open(const std::string& path) {
     const bool on_this_host = owner->host == this_host();
     // Who has only just taken it from a dead process has not written its name yet.
     const bool is_new = on_this_host && start_time_of(owner->pid) != owner->start_time;
-    throw Held{who(*owner), owner->storing || is_new};
+    throw Held{owner_name(*owner), owner->storing || is_new};
   }
   if (result != 0) lock.flock_error = errno;
   return is_still_at(path, lock.file.get()) ? std::move(lock) : OpenedLock{};
@@ -255,14 +255,14 @@ void await_text(const std::string& path, const Descriptor& file) {
 /// Takes a dead process's lock away, `seen` in it, so that this one can make its own. Between the
 /// look and the move another may have done the same: its lock is put back.
 void take_away(const std::string& path, const std::string& seen) {
-  const std::string aside = beside(path, "." + random_identity().substr(0, 8));
-  if (::rename(path.c_str(), aside.c_str()) != 0) {
+  const std::string renamed = path_with_ending(path, "." + random_identity().substr(0, 8));
+  if (::rename(path.c_str(), renamed.c_str()) != 0) {
     if (errno == ENOENT) return;
     fail_on_disk(path, "rename", errno);
   }
-  const Descriptor file = open_lock(aside, O_RDONLY);
-  if (file && read_all(aside, file.get()) != seen) ::link(aside.c_str(), path.c_str());
-  ::unlink(aside.c_str());
+  const Descriptor file = open_lock(renamed, O_RDONLY);
+  if (file && read_all(renamed, file.get()) != seen) ::link(renamed.c_str(), path.c_str());
+  ::unlink(renamed.c_str());
 }
 
 }  // namespace

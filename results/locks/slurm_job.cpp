@@ -87,14 +87,14 @@ std::optional<std::string> read_to_end(int pipe) {
 std::optional<std::string> output_of(const std::vector<std::string>& words) {
   std::array<int, 2> ends{};
   if (!open_pipe(ends)) return std::nullopt;
-  const Descriptor from(ends[0]);
+  const Descriptor read_end(ends[0]);
   pid_t child = -1;
   {
-    const Descriptor to(ends[1]);
-    child = spawn(words, to.get());
+    const Descriptor write_end(ends[1]);
+    child = spawn(words, write_end.get());
   }
   if (child < 0) return std::nullopt;
-  const auto text = read_to_end(from.get());
+  const auto text = read_to_end(read_end.get());
   if (!text) ::kill(child, SIGKILL);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {

@@ -40,11 +40,11 @@ std::pair<std::uint64_t, std::int64_t> version_of(const std::string& path) {
   return {status.st_ino, change_time(status).nanoseconds};
 }
 
-RunStatus status_of(const ResultsFile& file, Realizations which, const std::string& results_path,
-                    SlurmQueue& queue) {
+RunStatus status_of(const ResultsFile& file, Realizations selection,
+                    const std::string& results_path, SlurmQueue& queue) {
   RunStatus status{.state = file.state(),
                    .owner = lock_owner(results_path, queue),
-                   .realizations = file.realizations(which)};
+                   .realizations = file.realizations(selection)};
   take_parts(file, status.realizations);
   struct stat on_disk {};
   if (::stat(results_path.c_str(), &on_disk) == 0)
@@ -85,14 +85,14 @@ template <class Read>
 auto read_undisturbed(const std::string& results_path, const Read& read) {
   constexpr int most_tries = 20;
   for (int tries = 1;; ++tries) {
-    const auto before = version_of(results_path);
+    const auto version_before = version_of(results_path);
     const auto parts = realizations_with_parts(results_path);
     try {
       auto found = read();
-      if (version_of(results_path) == before || tries == most_tries) return found;
+      if (version_of(results_path) == version_before || tries == most_tries) return found;
     } catch (const ResultsError&) {
-      const bool folded =
-          version_of(results_path) != before || realizations_with_parts(results_path) != parts;
+      const bool folded = version_of(results_path) != version_before ||
+                          realizations_with_parts(results_path) != parts;
       if (!folded || tries == most_tries) throw;
     }
   }
@@ -126,23 +126,23 @@ RunStatus run_status(const std::string& named) {
   const std::string results_path = end_of_links(named);
   SlurmQueue queue;
   for (;;) {
-    const auto before = version_of(results_path);
+    const auto version_before = version_of(results_path);
     const RunStatus status =
         status_of(ResultsFile(results_path), Realizations::all, results_path, queue);
     // Parts that a fold meanwhile took away are in the new file.
-    if (version_of(results_path) == before) return status;
+    if (version_of(results_path) == version_before) return status;
   }
 }
 
 LiveLook look_at_run(const std::string& named, SlurmQueue& queue, const ResultsFile* sibling) {
   const std::string results_path = end_of_links(named);
   for (;;) {
-    const auto before = version_of(results_path);
+    const auto version_before = version_of(results_path);
     ResultsFile file = sibling == nullptr
                            ? ResultsFile(results_path, Verify::end_of_file)
                            : ResultsFile(results_path, Verify::end_of_file, *sibling);
     RunStatus status = status_of(file, Realizations::of_its_share, results_path, queue);
-    if (version_of(results_path) == before) return {std::move(file), std::move(status)};
+    if (version_of(results_path) == version_before) return {std::move(file), std::move(status)};
   }
 }
 

@@ -32,18 +32,18 @@ std::string named(RealizationId id) {
   return fmt::format("realization {} of sweep point {}", id.realization, id.point);
 }
 
-void check_same_study(const ResultsFile& first, const ResultsFile& other) {
-  if (first.study().resolved_scene != other.study().resolved_scene ||
-      first.study().realizations != other.study().realizations ||
-      first.study().points.size() != other.study().points.size())
-    throw ResultsError(other.path(), "holds another scene than " + first.path() +
-                                         "; compare /scene/resolved of both");
+void check_same_study(const ResultsFile& first, const ResultsFile& second) {
+  if (first.study().resolved_scene != second.study().resolved_scene ||
+      first.study().realizations != second.study().realizations ||
+      first.study().points.size() != second.study().points.size())
+    throw ResultsError(second.path(), "holds another scene than " + first.path() +
+                                          "; compare /scene/resolved of both");
 }
 
 /// Points of one scene start alike.
-void check_same_starts(const ResultsFile& first, const ResultsFile& other) {
-  if (const auto point = other_start(other.study(), first.study()))
-    throw ResultsError(other.path(),
+void check_same_starts(const ResultsFile& first, const ResultsFile& second) {
+  if (const auto point = other_start(second.study(), first.study()))
+    throw ResultsError(second.path(),
                        fmt::format("starts sweep point {} from another packing than {}: "
                                    "the file it was read from had changed",
                                    *point, first.path()));
@@ -59,7 +59,7 @@ void claim(Owners& owners, MergeInputs& inputs, std::size_t number, const Study&
   const PointNumbers numbers(study);
   for (const RealizationSummary& summary : file.realizations(Realizations::of_its_share)) {
     if (summary.status == RealizationStatus::missing) continue;
-    const auto point = numbers.of(file.study().points[summary.id.point].id);
+    const auto point = numbers.find(file.study().points[summary.id.point].id);
     if (!point)
       throw ResultsError(file.path(), fmt::format("holds sweep point {}, which is not of the "
                                                   "merged scene",
@@ -115,14 +115,16 @@ void require_finished(const std::vector<ResultsFile>& files) {
     if (file.state() != RunState::complete || parts_exist(file.path()))
       unfinished.push_back(file.path());
   if (unfinished.empty()) return;
-  std::string others;
+  std::string other_inputs;
   for (std::size_t i = 1; i < std::min(unfinished.size(), most); ++i)
-    others += (i > 1 ? ", " : "") + unfinished[i];
-  if (unfinished.size() > most) others += fmt::format(" and {} more", unfinished.size() - most);
+    other_inputs += (i > 1 ? ", " : "") + unfinished[i];
+  if (unfinished.size() > most)
+    other_inputs += fmt::format(" and {} more", unfinished.size() - most);
   const std::string nor = unfinished.size() == 2 ? ", nor is " : ", nor are ";
-  throw ResultsError(unfinished.front(), fmt::format("is not finished{}; resume {} to the end",
-                                                     others.empty() ? "" : nor + others,
-                                                     others.empty() ? "its run" : "their runs"));
+  throw ResultsError(unfinished.front(),
+                     fmt::format("is not finished{}; resume {} to the end",
+                                 other_inputs.empty() ? "" : nor + other_inputs,
+                                 other_inputs.empty() ? "its run" : "their runs"));
 }
 
 /// The merged file holds what its inputs hold, compressed alike.

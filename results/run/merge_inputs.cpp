@@ -20,11 +20,11 @@ class Input : public StoredRealization {
     stored().read_rows(first, rows);
   }
   std::vector<SnapshotOutline> snapshots() override { return stored().snapshots(); }
-  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t which) override {
-    return stored().vectors(tap, which);
+  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t index) override {
+    return stored().vectors(tap, index);
   }
-  std::vector<double> profile(std::uint64_t tap, std::size_t which) override {
-    return stored().profile(tap, which);
+  std::vector<double> profile(std::uint64_t tap, std::size_t index) override {
+    return stored().profile(tap, index);
   }
   std::vector<Contact> contacts(std::uint64_t tap) override { return stored().contacts(tap); }
 

@@ -82,7 +82,7 @@ constexpr std::uint32_t in_state = 0xffffffff;  // in the place of a segment's n
 struct PartsIndex {
   struct Rows {
     std::uint32_t segment;
-    std::uint64_t first, end, at;
+    std::uint64_t first, end, offset;
   };
   struct Snapshot : SnapshotPlace {
     std::uint32_t segment;
@@ -104,10 +104,10 @@ PartsIndex index_parts(const std::string& results_path, const PartIdentity& iden
       throw ResultsError(path, "its rows do not follow on one another");
     next_row += piece.n_numbers / n_columns;
     index.rows.push_back({segment, piece.first_row, next_row, piece.rows_at});
-    for (const SnapshotPlace& one : piece.snapshots) {
-      if (!index.snapshots.empty() && one.tap <= index.snapshots.back().tap)
+    for (const SnapshotPlace& snapshot : piece.snapshots) {
+      if (!index.snapshots.empty() && snapshot.tap <= index.snapshots.back().tap)
         throw ResultsError(path, "its snapshots do not follow on one another");
-      index.snapshots.push_back({one, segment});
+      index.snapshots.push_back({snapshot, segment});
     }
   };
   for (std::uint32_t k = 0; k < index.outline.part.n_segments; ++k)
@@ -143,15 +143,15 @@ class Continued : public StoredRealization {
   std::uint64_t n_rows() const override { return n_rows_; }
   void read_rows(std::uint64_t first, std::span<double> rows) override;
   std::vector<SnapshotOutline> snapshots() override;
-  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t which) override;
-  std::vector<double> profile(std::uint64_t tap, std::size_t which) override;
+  std::vector<Vec3> vectors(std::uint64_t tap, std::size_t index) override;
+  std::vector<double> profile(std::uint64_t tap, std::size_t index) override;
   std::vector<Contact> contacts(std::uint64_t tap) override;
 
  private:
   /// Position of an indexed item.
   struct Place {
     std::uint32_t segment;
-    std::uint64_t at;
+    std::uint64_t offset;
   };
   /// Reads the item that `place` finds in the index. A live run continues: another checkpoint may
   /// have taken the place of the one that was indexed, or its tail become a segment; all is indexed
@@ -174,11 +174,11 @@ class Continued : public StoredRealization {
 
 void Continued::read(const std::function<Place()>& place, std::span<std::byte> bytes) {
   for (;;) {
-    const auto [segment, at] = place();
+    const auto [segment, offset] = place();
     const bool in_tail = segment == in_state;
     InputFile file(in_tail ? state_path(results_path_, identity_.id)
                            : segment_path(results_path_, identity_.id, segment));
-    if (!in_tail || file.stamp() == index_.outline.stamp) return file.read_at(at, bytes);
+    if (!in_tail || file.stamp() == index_.outline.stamp) return file.read_at(offset, bytes);
     index_ = index_parts(results_path_, identity_, n_columns_);
     index_.outline.part.state.reset();
     if (index_.n_rows() < n_rows_ || index_.outline.part.base_rows != base_rows_)
@@ -199,7 +199,7 @@ void Continued::read_rows(std::uint64_t first, std::span<double> rows) {
     const auto head = rows.first(n * n_columns_);
     const auto place = [&]() -> Place {
       const PartsIndex::Rows& piece = rows_with(first);
-      return {piece.segment, piece.at + (first - piece.first) * n_columns_ * sizeof(double)};
+      return {piece.segment, piece.offset + (first - piece.first) * n_columns_ * sizeof(double)};
     };
     if (in_base)
       base_->read_rows(first, head);
@@ -213,14 +213,15 @@ void Continued::read_rows(std::uint64_t first, std::span<double> rows) {
 std::vector<SnapshotOutline> Continued::snapshots() {
   if (content_ == Content::without_snapshots) return {};
   std::vector<SnapshotOutline> outlines = base_->snapshots();
-  std::erase_if(outlines, [&](const SnapshotOutline& one) { return one.tap >= base_rows_; });
-  for (const PartsIndex::Snapshot& one : index_.snapshots) {
-    SnapshotOutline outline{.tap = one.tap,
-                            .n_contacts = one.contacts.n,
-                            .coordination = one.coordination,
-                            .forces = one.forces};
+  std::erase_if(outlines,
+                [&](const SnapshotOutline& outline) { return outline.tap >= base_rows_; });
+  for (const PartsIndex::Snapshot& snapshot : index_.snapshots) {
+    SnapshotOutline outline{.tap = snapshot.tap,
+                            .n_contacts = snapshot.contacts.n,
+                            .coordination = snapshot.coordination,
+                            .forces = snapshot.forces};
     for (std::size_t k = 0; k < n_sphere_vectors; ++k)
-      outline.n_spheres[k] = static_cast<std::uint32_t>(one.vectors[k].n);
+      outline.n_spheres[k] = static_cast<std::uint32_t>(snapshot.vectors[k].n);
     outlines.push_back(std::move(outline));
   }
   return outlines;
@@ -234,32 +235,34 @@ const PartsIndex::Snapshot* Continued::snapshot_at(std::uint64_t tap) const {
 
 template <class T, class ExtentOf>
 std::vector<T> Continued::read_vector(std::uint64_t tap, const ExtentOf& extent_of) {
-  const PartsIndex::Snapshot* const there = snapshot_at(tap);
-  if (there == nullptr) return {};
-  std::vector<T> values(extent_of(*there).n);
+  const PartsIndex::Snapshot* const indexed = snapshot_at(tap);
+  if (indexed == nullptr) return {};
+  std::vector<T> values(extent_of(*indexed).n);
   const auto place = [&]() -> Place {
     const PartsIndex::Snapshot* const snapshot = snapshot_at(tap);
     if (snapshot == nullptr || extent_of(*snapshot).n != values.size())
       throw ResultsError(state_path(results_path_, identity_.id), "has changed meanwhile");
-    return {snapshot->segment, extent_of(*snapshot).at};
+    return {snapshot->segment, extent_of(*snapshot).offset};
   };
   if (!values.empty()) read(place, std::as_writable_bytes(std::span(values)));
   return values;
 }
 
-std::vector<Vec3> Continued::vectors(std::uint64_t tap, std::size_t which) {
-  if (tap < base_rows_) return base_->vectors(tap, which);
-  return read_vector<Vec3>(tap, [which](const SnapshotPlace& at) { return at.vectors[which]; });
+std::vector<Vec3> Continued::vectors(std::uint64_t tap, std::size_t index) {
+  if (tap < base_rows_) return base_->vectors(tap, index);
+  return read_vector<Vec3>(tap,
+                           [index](const SnapshotPlace& place) { return place.vectors[index]; });
 }
 
-std::vector<double> Continued::profile(std::uint64_t tap, std::size_t which) {
-  if (tap < base_rows_) return base_->profile(tap, which);
-  return read_vector<double>(tap, [which](const SnapshotPlace& at) { return at.profiles[which]; });
+std::vector<double> Continued::profile(std::uint64_t tap, std::size_t index) {
+  if (tap < base_rows_) return base_->profile(tap, index);
+  return read_vector<double>(tap,
+                             [index](const SnapshotPlace& place) { return place.profiles[index]; });
 }
 
 std::vector<Contact> Continued::contacts(std::uint64_t tap) {
   if (tap < base_rows_) return base_->contacts(tap);
-  return read_vector<Contact>(tap, [](const SnapshotPlace& at) { return at.contacts; });
+  return read_vector<Contact>(tap, [](const SnapshotPlace& place) { return place.contacts; });
 }
 
 }  // namespace

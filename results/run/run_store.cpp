@@ -142,7 +142,7 @@ void RunStore::Impl::check_shard_and_points() const {
                                          stored.count, shard.index, shard.count));
   const PointNumbers numbers(study);
   for (const StudyPoint& point : file->study().points)
-    if (!numbers.of(point.id))
+    if (!numbers.find(point.id))
       throw ResultsError(path, fmt::format("has the sweep point {}, but the scene has not: values "
                                            "can be added to a sweep, not removed",
                                            point.label));
@@ -186,18 +186,18 @@ void RunStore::Impl::fold_parts_of_the_stored_points() {
 void RunStore::Impl::fold(const StoringProgress& progress) {
   const PointNumbers in_file(file->study());
   const auto realization = [&](RealizationId id) {
-    const auto stored = in_file.of(study.points[id.point].id);
+    const auto stored = in_file.find(study.points[id.point].id);
     auto base = stored ? file->realization({*stored, id.realization}) : in_memory();
     if (!in_parts.contains(id)) return base;
     return continued(std::move(base), path, {run_id, id}, n_columns(id));
   };
   const FileContent content{study, shard, processes, run_id, realization, progress};
   if (!still_ours()) {
-    const std::string elsewhere = beside(path, "." + run_id.substr(0, 8));
-    write_results(elsewhere, content);
+    const std::string new_path = path_with_ending(path, "." + run_id.substr(0, 8));
+    write_results(new_path, content);
     throw ResultsError(path, fmt::format("another file was put here during the run, and is kept; "
                                          "the computed results are in {}",
-                                         elsewhere));
+                                         new_path));
   }
   write_results(path, content);
   open_file();

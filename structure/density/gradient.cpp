@@ -45,8 +45,8 @@ Gradient fit_line(const std::vector<double>& x, const std::vector<double>& y) {
   }
   const double slope = xy / xx;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const double off = y[i] - mean_y - slope * (x[i] - mean_x);
-    residual += off * off;
+    const double deviation = y[i] - mean_y - slope * (x[i] - mean_x);
+    residual += deviation * deviation;
   }
   return {-slope, std::sqrt(residual / (n - 2) / xx), x.size(), {}};
 }

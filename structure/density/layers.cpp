@@ -22,11 +22,12 @@ double places_on(double length, double first) {
   return std::max(0.0, std::floor(length - first + rounding) + 1);
 }
 
-// Places of a close-packed layer on a rectangle, with a row along its side of length `along`.
-double places_in_rectangle(double along, double across) {
+// Places of a close-packed layer on a rectangle, with a row along its side of length
+// `longitudinal`.
+double places_in_rectangle(double longitudinal, double across) {
   const double rows = std::floor(across / row + rounding) + 1;
   const double shifted = std::floor(rows / 2);
-  return (rows - shifted) * places_on(along, 0) + shifted * places_on(along, 0.5);
+  return (rows - shifted) * places_on(longitudinal, 0) + shifted * places_on(longitudinal, 0.5);
 }
 
 // Places of a close-packed layer in a disc whose middle is at (x, y), a place being at (0, 0).
@@ -36,8 +37,8 @@ double places_around(double x, double y, double radius) {
   const auto first = static_cast<long>(std::ceil((y - reach) / row));
   const auto last = static_cast<long>(std::floor((y + reach) / row));
   for (long j = first; j <= last; ++j) {
-    const double up = static_cast<double>(j) * row - y;
-    const double half = std::sqrt(std::max(0.0, reach * reach - up * up));
+    const double height = static_cast<double>(j) * row - y;
+    const double half = std::sqrt(std::max(0.0, reach * reach - height * height));
     const double middle = x - (j % 2 != 0 ? 0.5 : 0);
     places += std::floor(middle + half) - std::ceil(middle - half) + 1;
   }
@@ -86,7 +87,8 @@ double layer_by_area(const Container& container) {
 }
 
 // For ascending heights those in [low, high).
-std::span<const double> between(const std::vector<double>& heights, double low, double high) {
+std::span<const double> heights_between(const std::vector<double>& heights, double low,
+                                        double high) {
   const auto first = std::ranges::lower_bound(heights, low);
   const auto last = std::ranges::lower_bound(heights, high);
   return {first, std::max(first, last)};
@@ -97,7 +99,7 @@ std::span<const double> between(const std::vector<double>& heights, double low, 
 double height_near(const std::vector<double>& heights, double place) {
   constexpr double reach = 0.3;
   for (int turn = 0; turn < 2; ++turn) {
-    const std::span<const double> near = between(heights, place - reach, place + reach);
+    const std::span<const double> near = heights_between(heights, place - reach, place + reach);
     if (near.empty()) return place;
     double sum = 0;
     for (const double height : near) sum += height - place;
@@ -133,11 +135,11 @@ std::vector<Layer> layers(const Packing& packing, double tolerance) {
     const double low = k == 0 ? 0 : 0.5 * (all[k - 1].found + all[k].found);
     const double high =
         k + 1 < all.size() ? 0.5 * (all[k].found + all[k + 1].found) : heights.back() + spacing;
-    const auto number = static_cast<double>(between(heights, low, high).size());
-    const auto near =
-        static_cast<double>(between(heights, std::max(low, all[k].found - tolerance),
-                                    std::min(high, std::nextafter(all[k].found + tolerance, high)))
-                                .size());
+    const auto number = static_cast<double>(heights_between(heights, low, high).size());
+    const auto near = static_cast<double>(
+        heights_between(heights, std::max(low, all[k].found - tolerance),
+                        std::min(high, std::nextafter(all[k].found + tolerance, high)))
+            .size());
     all[k].filling = number / full_layer(packing.container);
     all[k].share = number > 0 ? near / number : 0;
   }

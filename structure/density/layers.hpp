@@ -28,12 +28,13 @@ struct LayerRule {
   bool operator==(const LayerRule&) const = default;
 
   static constexpr auto fields() {
-    return std::tuple{field("tolerance", &LayerRule::tolerance, Number{above(0, 0.4), "diameters"},
-                            "Distance of a centre from its layer's height"),
-                      field("least_share", &LayerRule::least_share, Number{between(0, 1)},
-                            "Share of a layer's centres within the tolerance"),
-                      field("least_filling", &LayerRule::least_filling, Number{between(0, 1)},
-                            "Filling of a full layer")};
+    return std::tuple{
+        field("tolerance", &LayerRule::tolerance, Number{left_open_range(0, 0.4), "diameters"},
+              "Distance of a centre from its layer's height"),
+        field("least_share", &LayerRule::least_share, Number{closed_range(0, 1)},
+              "Share of a layer's centres within the tolerance"),
+        field("least_filling", &LayerRule::least_filling, Number{closed_range(0, 1)},
+              "Filling of a full layer")};
   }
 };
 

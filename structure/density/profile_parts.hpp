@@ -20,19 +20,19 @@ void require_window(HeightWindow window);
 Profile empty_profile(std::span<const double> edges, double low, double high,
                       const std::function<double(double)>& volume_below);
 
-/// Adds a sphere that reaches from `from` to `to` to the solid volumes that `values` hold until
+/// Adds a sphere that reaches from `low` to `high` to the solid volumes that `values` hold until
 /// they are divided. `volume_below` gives the volume of the sphere below an edge.
 template <class VolumeBelow>
-void share_out(Profile& profile, double from, double to, VolumeBelow&& volume_below) {
+void share_out(Profile& profile, double low, double high, VolumeBelow&& volume_below) {
   const auto& edges = profile.edges;
-  const auto first = std::ranges::upper_bound(edges, from);
+  const auto first = std::ranges::upper_bound(edges, low);
   std::size_t k = first == edges.begin() ? 0 : static_cast<std::size_t>(first - edges.begin()) - 1;
-  if (k >= profile.size() || edges[k] >= to) return;
-  double below = volume_below(edges[k]);
-  for (; k < profile.size() && edges[k] < to; ++k) {
+  if (k >= profile.size() || edges[k] >= high) return;
+  double volume_before = volume_below(edges[k]);
+  for (; k < profile.size() && edges[k] < high; ++k) {
     const double next = volume_below(edges[k + 1]);
-    profile.values[k] += next - below;
-    below = next;
+    profile.values[k] += next - volume_before;
+    volume_before = next;
   }
 }
 

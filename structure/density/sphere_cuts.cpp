@@ -81,12 +81,12 @@ double sphere_volume_in_box(Vec3 low, Vec3 high) {
 }
 
 double disc_area_in_strip(double disc_radius, double low, double high) {
-  const auto below = [&](double t) {
+  const auto volume_below = [&](double t) {
     const double line = std::clamp(t, -disc_radius, disc_radius);
     const double half_chord = root(disc_radius * disc_radius - line * line);
     return disc_radius * disc_radius * std::atan2(line, half_chord) + line * half_chord;
   };
-  return below(high) - below(low);
+  return volume_below(high) - volume_below(low);
 }
 
 }  // namespace jostle::inline structure

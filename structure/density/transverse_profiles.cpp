@@ -47,7 +47,7 @@ void for_each_image(double place, double own_radius, const Footprint& box, Act&&
   if (place > box.width - own_radius) act(place - box.width);
 }
 
-double along(Vec3 centre, Axis axis) {
+double coordinate(Vec3 centre, Axis axis) {
   return axis == Axis::x ? centre.x : centre.y;
 }
 
@@ -65,7 +65,7 @@ Profile transverse_profile(const Packing& packing, Axis axis, std::span<const do
     const double own_radius = packing.radius(i), d = 2 * own_radius;
     const double low = (window.low - centre.z) / d, high = (window.high - centre.z) / d;
     if (low >= sphere_radius || high <= -sphere_radius) continue;
-    for_each_image(along(centre, axis), own_radius, box, [&](double place) {
+    for_each_image(coordinate(centre, axis), own_radius, box, [&](double place) {
       share_out(profile, place - own_radius, place + own_radius, [&](double edge) {
         // By symmetry the part below the edge is the part beyond its mirror image.
         const double mirrored = (place - edge) / d;
@@ -85,9 +85,9 @@ Profile mean_transverse_profile(const Packing& packing, std::span<const double> 
         "profile: the mean over x and y needs a square footprint; take each by itself");
   }
   Profile profile = transverse_profile(packing, Axis::x, edges, window);
-  const Profile other = transverse_profile(packing, Axis::y, edges, window);
+  const Profile second = transverse_profile(packing, Axis::y, edges, window);
   for (std::size_t k = 0; k < profile.size(); ++k) {
-    profile.values[k] = 0.5 * (profile.values[k] + other.values[k]);
+    profile.values[k] = 0.5 * (profile.values[k] + second.values[k]);
   }
   return profile;
 }
@@ -103,7 +103,7 @@ std::vector<double> transverse_cuts(const Packing& packing, Axis axis,
     for (std::size_t i = 0; i < packing.centres.size(); ++i) {
       const Vec3 centre = packing.centres[i];
       const double own_radius = packing.radius(i);
-      for_each_image(along(centre, axis), own_radius, box, [&](double image) {
+      for_each_image(coordinate(centre, axis), own_radius, box, [&](double image) {
         const double squared = own_radius * own_radius - (image - place) * (image - place);
         if (squared <= 0) return;
         area +=

@@ -31,13 +31,13 @@ struct GaussRule {
     for (int i = 0; i < n; ++i) {
       double x = std::cos(std::numbers::pi * (i + 0.75) / (n + 0.5)), slope = 0;
       for (int step = 0; step < 6; ++step) {
-        double p = 1, before = 0;
+        double p = 1, previous = 0;
         for (int k = 1; k <= n; ++k) {
-          const double next = ((2 * k - 1) * x * p - (k - 1) * before) / k;
-          before = p;
+          const double next = ((2 * k - 1) * x * p - (k - 1) * previous) / k;
+          previous = p;
           p = next;
         }
-        slope = n * (x * p - before) / (x * x - 1);
+        slope = n * (x * p - previous) / (x * x - 1);
         x -= p / slope;
       }
       nodes[static_cast<std::size_t>(i)] = 0.5 * (1 - x);
@@ -49,15 +49,16 @@ struct GaussRule {
 // Integral over [from, to], at whose ends the function may go like the power 3/2 of the distance:
 // as a function of t, z = from + (to - from) t^2 (3 - 2 t), it is smooth there.
 template <class Function>
-double integral(double from, double to, Function&& function) {
+double integral(double lower, double upper, Function&& function) {
   static const GaussRule<24> rule;
-  if (!(to > from)) return 0;
+  if (!(upper > lower)) return 0;
   double sum = 0;
   for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
     const double t = rule.nodes[k];
-    sum += rule.weights[k] * 6 * t * (1 - t) * function(from + (to - from) * t * t * (3 - 2 * t));
+    sum +=
+        rule.weights[k] * 6 * t * (1 - t) * function(lower + (upper - lower) * t * t * (3 - 2 * t));
   }
-  return sum * (to - from);
+  return sum * (upper - lower);
 }
 
 }  // namespace
@@ -76,10 +77,10 @@ double sphere_volume_in_tube(double offset, double tube, double low, double high
   };
   const double core = tube + offset < sphere_radius ? height(tube + offset) : 0;
   const double edge = height(std::abs(tube - offset));
-  const auto between = [&](double from, double to) {
-    return std::max(0.0, std::min(top, to) - std::max(bottom, from));
+  const auto integral_between = [&](double lower, double upper) {
+    return std::max(0.0, std::min(top, upper) - std::max(bottom, lower));
   };
-  double volume = std::numbers::pi * tube * tube * between(-core, core);
+  double volume = std::numbers::pi * tube * tube * integral_between(-core, core);
   if (tube > offset) {
     volume += sphere_volume_in_slab(0, std::max(edge, bottom), std::max(edge, top)) +
               sphere_volume_in_slab(0, std::min(-edge, bottom), std::min(-edge, top));

@@ -13,10 +13,10 @@ namespace {
 
 constexpr double period_rounding = 1e-9;
 
-/// Area that two equal discs share, their middles `apart`.
-double lens_area(double apart, double radius) {
-  if (apart >= 2 * radius) return 0;
-  const double half = 0.5 * apart;
+/// Area that two equal discs share, their middles `distance`.
+double lens_area(double distance, double radius) {
+  if (distance >= 2 * radius) return 0;
+  const double half = 0.5 * distance;
   return 2 * (radius * radius * std::acos(half / radius) -
               half * std::sqrt(radius * radius - half * half));
 }
@@ -101,14 +101,14 @@ FootprintShares::FootprintShares(const AccessibleFootprint& footprint,
       n_centres_(centres.size()),
       reach_(reach) {
   if (shape_.tube) fill_disc(footprint, centres);
-  const auto along = [&](double Vec3::*axis, double low, double high) {
+  const auto range_along = [&](double Vec3::*axis, double low, double high) {
     std::vector<double> coordinates;
     for (const Vec3& r : centres) coordinates.push_back(r.*axis);
     std::ranges::sort(coordinates);
     return shares_inside(coordinates, low, high, reach);
   };
-  if (shape_.planes_x()) x_ = along(&Vec3::x, footprint.low_x_, footprint.high_x_);
-  if (shape_.planes_y()) y_ = along(&Vec3::y, footprint.low_y_, footprint.high_y_);
+  if (shape_.planes_x()) x_ = range_along(&Vec3::x, footprint.low_x_, footprint.high_x_);
+  if (shape_.planes_y()) y_ = range_along(&Vec3::y, footprint.low_y_, footprint.high_y_);
 }
 
 void FootprintShares::fill_disc(const AccessibleFootprint& footprint,
@@ -155,20 +155,21 @@ double FootprintShares::without_pair(double dx, double dy, double overlap, doubl
                                      double y) const {
   if (!shape_.has_walls() || n_centres_ <= 2) return overlap;
   const auto n = static_cast<double>(n_centres_);
-  const auto others = [n](double share, bool latter_inside) {
+  const auto pair_share = [n](double share, bool latter_inside) {
     return std::max(0.0, (n * share - 1 - (latter_inside ? 1 : 0)) / (n - 2));
   };
   if (shape_.tube) {
-    return others((*this)(dx, dy, overlap), footprint_.depth(x + dx, y + dy) >= 0);
+    return pair_share((*this)(dx, dy, overlap), footprint_.depth(x + dx, y + dy) >= 0);
   }
   const double in_period = overlap > 0 ? 1 : 0;
-  const auto along = [&](bool planes, const StepTable& table, double displacement, double from,
-                         double low, double high) {
+  const auto share_along = [&](bool planes, const StepTable& table, double displacement,
+                               double start, double low, double high) {
     if (!planes) return in_period;
-    return others(table(displacement), low <= from + displacement && from + displacement <= high);
+    return pair_share(table(displacement),
+                      low <= start + displacement && start + displacement <= high);
   };
-  return along(shape_.planes_x(), x_, dx, x, footprint_.low_x_, footprint_.high_x_) *
-         along(shape_.planes_y(), y_, dy, y, footprint_.low_y_, footprint_.high_y_);
+  return share_along(shape_.planes_x(), x_, dx, x, footprint_.low_x_, footprint_.high_x_) *
+         share_along(shape_.planes_y(), y_, dy, y, footprint_.low_y_, footprint_.high_y_);
 }
 
 std::vector<Vec3> even_directions(int n) {

@@ -50,15 +50,15 @@ class Harmonics {
 
   void add(Vec3 direction, Multipole<l>& q) const {
     const double square = direction.z * direction.z;
-    double along = 1, across = 0;  // (x + i y)^m
+    double real_part = 1, across = 0;  // (x + i y)^m
     for (int m = 0; m <= l; ++m) {
       double polynomial = 0;
       for (int k = 0; k <= (l - m) / 2; ++k) polynomial = polynomial * square + descending_[m][k];
       if ((l - m) % 2 != 0) polynomial *= direction.z;
-      q[m] += Complex{polynomial * along, polynomial * across};
-      const double turned = along * direction.x - across * direction.y;
-      across = along * direction.y + across * direction.x;
-      along = turned;
+      q[m] += Complex{polynomial * real_part, polynomial * across};
+      const double turned = real_part * direction.x - across * direction.y;
+      across = real_part * direction.y + across * direction.x;
+      real_part = turned;
     }
   }
 
@@ -110,11 +110,13 @@ class Invariants {
     for (int a = -l; a <= l; ++a) {
       double re = 0, im = 0;
       for (int b = std::max(-l, -l - a); b <= std::min(l, l - a); ++b) {
-        const Complex& one = all[l + b];
-        const Complex& other = all[l - a - b];
+        const Complex& first_factor = all[l + b];
+        const Complex& second_factor = all[l - a - b];
         const double coupling = couplings_[a + l][b + l];
-        re += coupling * (one.real() * other.real() - one.imag() * other.imag());
-        im += coupling * (one.real() * other.imag() + one.imag() * other.real());
+        re += coupling * (first_factor.real() * second_factor.real() -
+                          first_factor.imag() * second_factor.imag());
+        im += coupling * (first_factor.real() * second_factor.imag() +
+                          first_factor.imag() * second_factor.real());
       }
       sum += all[l + a].real() * re - all[l + a].imag() * im;
     }
@@ -146,12 +148,12 @@ std::vector<Multipoles> bond_multipoles(const NeighbourTable& table) {
   const Harmonics<6> sixth;
   std::vector<Multipoles> all(table.size());
   for (std::size_t i = 0; i < table.size(); ++i) {
-    for (const Neighbour& neighbour : table.of(i)) {
+    for (const Neighbour& neighbour : table.neighbours_of(i)) {
       const Vec3 direction = (1 / std::sqrt(neighbour.distance_squared)) * neighbour.way;
       fourth.add(direction, all[i].four);
       sixth.add(direction, all[i].six);
     }
-    scale(all[i], 1 / static_cast<double>(table.of(i).size()));
+    scale(all[i], 1 / static_cast<double>(table.neighbours_of(i).size()));
   }
   return all;
 }

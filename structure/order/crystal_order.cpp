@@ -29,12 +29,12 @@ Bonds bonds_among(std::span<const Neighbour> neighbours) {
   return bonds;
 }
 
-enum class Signature { other, s421, s422 };
+enum class Signature { unclassified, s421, s422 };
 
 // Four common neighbours with two bonds: apart, the longest chain is 1, sharing a sphere, 2.
 Signature signature(const Bonds& bonds, unsigned neighbour) {
   const unsigned common = bonds[neighbour];
-  if (std::popcount(common) != 4) return Signature::other;
+  if (std::popcount(common) != 4) return Signature::unclassified;
   int ends = 0;
   bool shared = false;
   for (unsigned rest = common; rest != 0; rest &= rest - 1) {
@@ -42,7 +42,7 @@ Signature signature(const Bonds& bonds, unsigned neighbour) {
     ends += bonded;
     shared = shared || bonded > 1;
   }
-  if (ends != 4) return Signature::other;
+  if (ends != 4) return Signature::unclassified;
   return shared ? Signature::s422 : Signature::s421;
 }
 
@@ -52,7 +52,7 @@ CrystalOrder order_of(std::span<const Neighbour> neighbours) {
   unsigned n421 = 0, n422 = 0;
   for (unsigned a = 0; a < shell; ++a) {
     const Signature found = signature(bonds, a);
-    if (found == Signature::other) return CrystalOrder::disordered;
+    if (found == Signature::unclassified) return CrystalOrder::disordered;
     ++(found == Signature::s421 ? n421 : n422);
   }
   if (n421 == 12) return CrystalOrder::fcc;
@@ -68,7 +68,8 @@ std::vector<CrystalOrder> crystal_order(const Packing& packing) {
 std::vector<CrystalOrder> crystal_order(const NeighbourTable& nearest) {
   std::vector<CrystalOrder> orders;
   orders.reserve(nearest.size());
-  for (std::size_t i = 0; i < nearest.size(); ++i) orders.push_back(order_of(nearest.of(i)));
+  for (std::size_t i = 0; i < nearest.size(); ++i)
+    orders.push_back(order_of(nearest.neighbours_of(i)));
   return orders;
 }
 

@@ -63,7 +63,7 @@ Backbone backbone(const Packing& packing, const NeighbourTable& near, double tol
   for (std::size_t i = 0; i < near.size(); ++i) {
     unsigned contacts =
         boundary_contacts(boundary, packing.centres[i], packing.radius(i), tolerance);
-    for (const Neighbour& neighbour : near.of(i)) {
+    for (const Neighbour& neighbour : near.neighbours_of(i)) {
       contacts += neighbour.distance_squared <= reach ? 1 : 0;
     }
     found.contacts.push_back(contacts);
@@ -73,7 +73,7 @@ Backbone backbone(const Packing& packing, const NeighbourTable& near, double tol
   while (!loose.empty()) {
     const std::size_t i = loose.back();
     loose.pop_back();
-    for (const Neighbour& neighbour : near.of(i)) {
+    for (const Neighbour& neighbour : near.neighbours_of(i)) {
       if (neighbour.distance_squared > reach) continue;
       const std::size_t j = neighbour.sphere;
       --found.contacts[j];
@@ -108,12 +108,12 @@ double gap_exponent(std::span<const double> gaps, double low, double high,
   const double mean = sum / all - 0.5;
   // For ln h the density is as h^(1 - gamma) (1 + h)^2.
   constexpr double steepest = 1e4;
-  double below = -steepest, above = steepest;
+  double lower = -steepest, upper = steepest;
   for (int turn = 0; turn < 100; ++turn) {
-    const double middle = 0.5 * (below + above);
-    (mean_in_shells(middle, low, range) < mean ? below : above) = middle;
+    const double middle = 0.5 * (lower + upper);
+    (mean_in_shells(middle, low, range) < mean ? lower : upper) = middle;
   }
-  return 1 - 0.5 * (below + above) / range;
+  return 1 - 0.5 * (lower + upper) / range;
 }
 
 }  // namespace jostle::inline structure

@@ -24,19 +24,19 @@ std::vector<double> triangular() {
 std::vector<double> spread_over_kernel(const std::vector<double>& bins,
                                        const std::vector<double>& kernel) {
   const auto n = static_cast<long>(bins.size());
-  std::vector<double> out(bins.size(), 0.0);
+  std::vector<double> expected(bins.size(), 0.0);
   for (long i = 0; i < n; ++i) {
     const double value = bins[static_cast<std::size_t>(i)];
     if (value == 0) continue;
     for (long k = -kernel_steps; k <= kernel_steps; ++k) {
-      long to = i + k;
-      if (to < 0) to = -1 - to;
-      if (to >= n) to = 2 * n - 1 - to;
-      out[static_cast<std::size_t>(to)] +=
+      long partner_bin = i + k;
+      if (partner_bin < 0) partner_bin = -1 - partner_bin;
+      if (partner_bin >= n) partner_bin = 2 * n - 1 - partner_bin;
+      expected[static_cast<std::size_t>(partner_bin)] +=
           value * kernel[static_cast<std::size_t>(k + kernel_steps)];
     }
   }
-  return out;
+  return expected;
 }
 
 std::vector<double> twiced(const std::vector<double>& bins, const std::vector<double>& kernel) {
@@ -47,9 +47,9 @@ std::vector<double> twiced(const std::vector<double>& bins, const std::vector<do
 }
 
 std::vector<double> spread_of_one(long bin, long n_bins) {
-  std::vector<double> one(static_cast<std::size_t>(n_bins), 0.0);
-  one[static_cast<std::size_t>(bin)] = 1;
-  return twiced(one, triangular());
+  std::vector<double> density(static_cast<std::size_t>(n_bins), 0.0);
+  density[static_cast<std::size_t>(bin)] = 1;
+  return twiced(density, triangular());
 }
 
 }  // namespace
@@ -83,13 +83,14 @@ HeightPairs::HeightPairs(const std::vector<double>& centres, const std::vector<d
     std::vector<double> near_end;
     if (last - first < 4 * kernel_steps) near_end = spread_of_one(i - first, last - first + 1);
     const std::vector<double>& self = near_end.empty() ? inner : near_end;
-    for (long up = std::max(-n_up, -i); up <= std::min(n_up, n_bins - 1 - i); ++up) {
-      const long to = i + up;
-      double others = partner[static_cast<std::size_t>(to)];
-      if (to >= first && to <= last) others -= self[static_cast<std::size_t>(to - first)];
-      const auto at = static_cast<std::size_t>(up + n_up);
-      density_[at] += n * others / height_step;
-      share_[at] += n / static_cast<double>(centres.size());
+    for (long shift = std::max(-n_up, -i); shift <= std::min(n_up, n_bins - 1 - i); ++shift) {
+      const long partner_bin = i + shift;
+      double n_partners = partner[static_cast<std::size_t>(partner_bin)];
+      if (partner_bin >= first && partner_bin <= last)
+        n_partners -= self[static_cast<std::size_t>(partner_bin - first)];
+      const auto index = static_cast<std::size_t>(shift + n_up);
+      density_[index] += n * n_partners / height_step;
+      share_[index] += n / static_cast<double>(centres.size());
     }
   }
 }

@@ -45,9 +45,9 @@ NeighbourFinder::NeighbourFinder(const Packing& packing, double cut)
   // Small cells exclude most spheres beyond the cut, if each still holds about a sphere.
   double side = std::max(0.8, cut / 3);
   do {
-    x_ = CellAxis::over(0, boundary.width_x, period.x, side);
-    y_ = CellAxis::over(0, boundary.width_y, period.y, side);
-    z_ = CellAxis::over(low, height, period.z, side);
+    x_ = CellAxis::divide(0, boundary.width_x, period.x, side);
+    y_ = CellAxis::divide(0, boundary.width_y, period.y, side);
+    z_ = CellAxis::divide(low, height, period.z, side);
     side *= 1.5;
   } while (1.0 * x_.count * y_.count * z_.count > most_cells(n));
 
@@ -79,7 +79,7 @@ NeighbourTable neighbours_within(const Packing& packing, double cut) {
   table.first.reserve(packing.centres.size() + 1);
   table.first.push_back(0);
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
-    finder.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
+    finder.visit_neighbours(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
       table.neighbours.push_back({j, way, distance_squared});
     });
     std::sort(table.neighbours.begin() + table.first.back(), table.neighbours.end(), nearer);
@@ -94,7 +94,7 @@ NeighbourTable neighbours_within_contacts(const Packing& packing, double cut) {
   NeighbourTable table;
   table.first.push_back(0);
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
-    finder.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
+    finder.visit_neighbours(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
       const double scaled = distance_squared / contact_squared(packing, i, j);
       if (scaled <= cut * cut) table.neighbours.push_back({j, way, scaled});
     });
@@ -110,14 +110,16 @@ namespace {
 /// repeat what is there, and few spheres would be surrounded by the lattice of the periods.
 void keep_centres(std::uint32_t i, std::vector<Neighbour>& near) {
   constexpr double adjacent_squared = first_nearest_cut * first_nearest_cut;
-  std::erase_if(near, [&](const Neighbour& one) { return one.sphere == i; });
+  std::erase_if(near, [&](const Neighbour& neighbour) { return neighbour.sphere == i; });
   std::ranges::sort(near, nearer);
   std::size_t kept = 0;
   for (std::size_t k = 0; k < near.size(); ++k) {
     const bool adjacent = near[k].distance_squared <= adjacent_squared;
-    const auto same = [&](const Neighbour& one) { return one.sphere == near[k].sphere; };
+    const auto is_same = [&](const Neighbour& neighbour) {
+      return neighbour.sphere == near[k].sphere;
+    };
     if (adjacent ||
-        std::none_of(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(kept), same)) {
+        std::none_of(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(kept), is_same)) {
       near[kept++] = near[k];
     }
   }
@@ -133,7 +135,7 @@ void add_nearest_images(const Packing& packing, const Boundary& boundary,
                         const NeighbourFinder& adjacent, std::uint32_t i,
                         std::vector<Neighbour>& near) {
   std::vector<bool> is_adjacent(packing.centres.size());
-  adjacent.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
+  adjacent.visit_neighbours(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
     near.push_back({j, way, distance_squared});
     is_adjacent[j] = true;
   });
@@ -167,7 +169,7 @@ NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count) {
       if (meets_all) {
         add_nearest_images(packing, boundary, adjacent, i, near);
       } else {
-        finder.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
+        finder.visit_neighbours(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
           near.push_back({j, way, distance_squared});
         });
         if (cut > first_nearest_cut) keep_centres(i, near);
@@ -195,11 +197,11 @@ NeighbourTable nearest_neighbours(const Packing& packing, std::uint32_t count) {
 // Voronoi cells of centres that all but coincide are lost in rounding, and beds have contacts.
 void require_diameters(const Packing& packing) {
   constexpr double least = 0.5, most = 1.5;
-  constexpr std::uint32_t many = 100;
+  constexpr std::uint32_t large_number = 100;
   const NeighbourFinder finder(packing, reach_of_cut(packing, most));
-  bool any = finder.size() < many;
+  bool any = finder.size() < large_number;
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
-    finder.around(i, [&](std::uint32_t j, Vec3, double distance_squared) {
+    finder.visit_neighbours(i, [&](std::uint32_t j, Vec3, double distance_squared) {
       const double contact = contact_squared(packing, i, j);
       if (distance_squared > most * most * contact) return;
       any = true;

@@ -23,23 +23,23 @@ class NeighbourFinder {
   /// itself. `way` leads from i to that centre or image. Where the box is narrow, i has images of
   /// its own as neighbours.
   template <class Visit>
-  void around(std::uint32_t i, Visit&& visit) const {
+  void visit_neighbours(std::uint32_t i, Visit&& visit) const {
     const std::uint32_t own_place = place_of_[i];
     const Vec3 r = centres_[own_place];
     const CellAxis::Range z_cells = z_.range(r.z - reach_, r.z + reach_);
     for (long k = z_cells.first; k <= z_cells.last; ++k) {
       const CellAxis::Image layer = z_.image(k);
-      const double layer_gap = z_.gap(k, r.z), beside = reach_ * reach_ - layer_gap * layer_gap;
-      if (beside < 0) continue;
-      const double half_y = std::sqrt(beside);
+      const double layer_gap = z_.gap(k, r.z), lateral2 = reach_ * reach_ - layer_gap * layer_gap;
+      if (lateral2 < 0) continue;
+      const double half_y = std::sqrt(lateral2);
       const CellAxis::Range y_cells = y_.range(r.y - half_y, r.y + half_y);
       for (long j = y_cells.first; j <= y_cells.last; ++j) {
         const CellAxis::Image row = y_.image(j);
-        const double row_gap = y_.gap(j, r.y), along = beside - row_gap * row_gap;
-        if (along < 0) continue;
+        const double row_gap = y_.gap(j, r.y), row2 = lateral2 - row_gap * row_gap;
+        if (row2 < 0) continue;
         const std::size_t begin = (static_cast<std::size_t>(layer.cell) * y_.count + row.cell) *
                                   static_cast<std::size_t>(x_.count);
-        const double half_x = std::sqrt(along);
+        const double half_x = std::sqrt(row2);
         const CellAxis::Range x_cells = x_.range(r.x - half_x, r.x + half_x);
         for (long first = x_cells.first; first <= x_cells.last;) {
           const CellAxis::Image cell = x_.image(first);
@@ -59,10 +59,10 @@ class NeighbourFinder {
   static constexpr std::uint32_t none = 0xffffffff;
 
   template <class Visit>
-  void visit_places(std::uint32_t begin, std::uint32_t end, Vec3 from, Vec3 shift,
+  void visit_places(std::uint32_t begin, std::uint32_t end, Vec3 start, Vec3 shift,
                     std::uint32_t own_place, Visit& visit) const {
     for (std::uint32_t place = begin; place != end; ++place) {
-      const Vec3 way = (centres_[place] - from) + shift;
+      const Vec3 way = (centres_[place] - start) + shift;
       const double distance_squared = norm_squared(way);
       if (distance_squared <= cut_squared_ && place != own_place) {
         visit(spheres_[place], way, distance_squared);
@@ -91,7 +91,7 @@ struct NeighbourTable {
   std::vector<Neighbour> neighbours;
 
   std::size_t size() const { return first.size() - 1; }
-  std::span<const Neighbour> of(std::size_t i) const {
+  std::span<const Neighbour> neighbours_of(std::size_t i) const {
     return {neighbours.data() + first[i], neighbours.data() + first[i + 1]};
   }
 };

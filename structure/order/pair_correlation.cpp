@@ -89,7 +89,7 @@ double number_density(const Packing& packing, const Heights& heights,
   return solid / (sphere_volume * footprint.area() * depth);
 }
 
-std::vector<Vec3> between(const std::vector<Vec3>& centres, HeightWindow heights) {
+std::vector<Vec3> centres_in(const std::vector<Vec3>& centres, HeightWindow heights) {
   std::vector<Vec3> found;
   std::ranges::copy_if(centres, std::back_inserter(found),
                        [&](const Vec3& r) { return r.z >= heights.low && r.z <= heights.high; });
@@ -103,8 +103,8 @@ class Displacements {
   Displacements(const Packing& packing, const Heights& heights, double r_max)
       : footprint_(packing),
         heights_(heights.all),
-        central_(between(packing.centres, heights.centres)),
-        sampled_(between(packing.centres, heights.accessible)),
+        central_(centres_in(packing.centres, heights.centres)),
+        sampled_(centres_in(packing.centres, heights.accessible)),
         shares_(footprint_, sampled_, r_max) {
     const Boundary boundary(packing.container);
     if (boundary.periodic_z) {
@@ -115,7 +115,7 @@ class Displacements {
     }
     std::vector<double> z, partners;
     for (const Vec3& r : central_) z.push_back(r.z);
-    for (const Vec3& r : between(packing.centres, heights.all)) partners.push_back(r.z);
+    for (const Vec3& r : centres_in(packing.centres, heights.all)) partners.push_back(r.z);
     std::ranges::sort(z);
     upright_ = shares_inside(z, heights.accessible.low, heights.accessible.high, r_max);
     uncorrelated_ = HeightPairs(z, partners, heights.all, r_max);
@@ -140,15 +140,16 @@ class Displacements {
 
   /// The weight of a pair: 1 over the share of central spheres in the grown region, and over the
   /// density of the partners there relative to the mean, as the other spheres give them.
-  double weight(Vec3 way, Vec3 from, Vec3 to) const {
+  double weight(Vec3 way, Vec3 start, Vec3 end) const {
     const double overlap = footprint_.overlap(way.x, way.y);
-    const double up = half_height_ > 0 ? 1 : uncorrelated_.share(way.z);
+    const double height_weight = half_height_ > 0 ? 1 : uncorrelated_.share(way.z);
     const double n = std::max(0.0, static_cast<double>(sampled_.size()) - 2);
     const double share =
-        evened(shares_.without_pair(way.x, way.y, overlap, to.x, to.y), n, overlap);
+        evened(shares_.without_pair(way.x, way.y, overlap, end.x, end.y), n, overlap);
     const double crowding =
-        evened(shares_.without_pair(-way.x, -way.y, overlap, from.x, from.y), n, overlap) / overlap;
-    return 1 / (std::max(up * share, least_share) * crowding);
+        evened(shares_.without_pair(-way.x, -way.y, overlap, start.x, start.y), n, overlap) /
+        overlap;
+    return 1 / (std::max(height_weight * share, least_share) * crowding);
   }
 
   /// Share of the central spheres that have that place in the region, not evened.
@@ -222,11 +223,11 @@ void count_pairs(const Packing& packing, const Heights& heights, const Displacem
   const NeighbourFinder finder(packing, static_cast<double>(n_bins) * pairs.bin_width);
   const double bins_per_length = 1 / pairs.bin_width;
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
-    const Vec3 from = packing.centres[i];
-    if (from.z < heights.centres.low || from.z > heights.centres.high) continue;
+    const Vec3 start = packing.centres[i];
+    if (start.z < heights.centres.low || start.z > heights.centres.high) continue;
     ++pairs.n_centres;
-    const double room = whole.room(from);
-    finder.around(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
+    const double room = whole.room(start);
+    finder.visit_neighbours(i, [&](std::uint32_t j, Vec3 way, double distance_squared) {
       const double height = packing.centres[j].z;
       if (j == i || height < heights.all.low - edge || height > heights.all.high + edge) return;
       const double distance = std::sqrt(distance_squared);
@@ -242,7 +243,7 @@ void count_pairs(const Packing& packing, const Heights& heights, const Displacem
         pairs.neighbours[bin] +=
             static_cast<double>(whole.count(high)) / static_cast<double>(whole.count(distance));
       }
-      pairs.found[bin] += displacements.weight(way, from, packing.centres[j]);
+      pairs.found[bin] += displacements.weight(way, start, packing.centres[j]);
     });
   }
 }
@@ -289,7 +290,7 @@ HeightWindow bulk_heights(const Packing& packing, double r_max) {
   const double floor = sphere_radius, surface = 2 * mean_height(packing);
   const double cut = std::min(r_max, (surface - floor) / 4);
   const HeightWindow bulk{floor + cut, surface - cut};
-  return between(packing.centres, bulk).empty() ? HeightWindow{floor, surface} : bulk;
+  return centres_in(packing.centres, bulk).empty() ? HeightWindow{floor, surface} : bulk;
 }
 
 std::vector<double> PairCorrelation::g() const {
@@ -308,18 +309,18 @@ std::vector<double> PairCorrelation::running_neighbours() const {
   return values;
 }
 
-PairCorrelation& PairCorrelation::operator+=(const PairCorrelation& other) {
-  assert(other.counts.size() == counts.size() && other.bin_width == bin_width);
+PairCorrelation& PairCorrelation::operator+=(const PairCorrelation& rhs) {
+  assert(rhs.counts.size() == counts.size() && rhs.bin_width == bin_width);
   for (std::size_t k = 0; k < counts.size(); ++k) {
-    counts[k] += other.counts[k];
-    neighbours[k] += other.neighbours[k];
-    found[k] += other.found[k];
-    expected[k] += other.expected[k];
-    shells[k] += other.shells[k];
+    counts[k] += rhs.counts[k];
+    neighbours[k] += rhs.neighbours[k];
+    found[k] += rhs.found[k];
+    expected[k] += rhs.expected[k];
+    shells[k] += rhs.shells[k];
   }
-  const auto own = static_cast<double>(n_centres), others = static_cast<double>(other.n_centres);
-  if (other.n_centres > 0) density = (own * density + others * other.density) / (own + others);
-  n_centres += other.n_centres;
+  const auto own = static_cast<double>(n_centres), n_others = static_cast<double>(rhs.n_centres);
+  if (rhs.n_centres > 0) density = (own * density + n_others * rhs.density) / (own + n_others);
+  n_centres += rhs.n_centres;
   return *this;
 }
 

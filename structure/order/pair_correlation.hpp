@@ -50,7 +50,7 @@ struct PairCorrelation {
 
   /// Pools the counts of another packing, measured in the same bins; density and n_centres become
   /// the mean, weighted by central spheres, and the sum.
-  PairCorrelation& operator+=(const PairCorrelation& other);
+  PairCorrelation& operator+=(const PairCorrelation& rhs);
 };
 
 /// Counts pairs of a central sphere, between `heights`, and another sphere in the accessible

@@ -121,7 +121,7 @@ std::vector<PartialCorrelation> partial_correlations(const Packing& packing,
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
     const double height = packing.centres[i].z;
     if (height < heights.low || height > heights.high) continue;
-    finder.around(i, [&](std::uint32_t j, Vec3, double distance_squared) {
+    finder.visit_neighbours(i, [&](std::uint32_t j, Vec3, double distance_squared) {
       if (j == i) return;
       const double x = std::sqrt(distance_squared / contact_squared(packing, i, j));
       const auto bin = static_cast<std::size_t>(x / settings.bin_width + early);
@@ -129,12 +129,12 @@ std::vector<PartialCorrelation> partial_correlations(const Packing& packing,
     });
     for (std::uint32_t j = 0; j < finder.size(); ++j) {
       if (j == i) continue;
-      ExpectedPairs& into = expected[place_of(sizes.kind(i), sizes.kind(j), n_kinds)];
+      ExpectedPairs& target = expected[place_of(sizes.kind(i), sizes.kind(j), n_kinds)];
       const double contact = sizes.radius(i) + sizes.radius(j);
       if (boundary.periodic_z)
-        into.add_shells(contact, 1 / (area * boundary.height));
+        target.add_shells(contact, 1 / (area * boundary.height));
       else
-        into.add_annuli(contact, packing.centres[j].z - height, 1 / area);
+        target.add_annuli(contact, packing.centres[j].z - height, 1 / area);
     }
   }
   for (std::size_t k = 0; k < all.size(); ++k) all[k].expected = std::move(expected[k]).bins();

@@ -149,7 +149,7 @@ StructureFactor structure_factor(const Packing& packing, const StructureFactorSe
   std::vector<Complex> amplitudes(modes.size());
   const double squares = add_amplitudes(packing, cut, modes, amplitudes);
   if (!(squares > 0)) throw std::invalid_argument("structure_factor: no sphere in the region");
-  StructureFactor out;
+  StructureFactor result;
   std::vector<std::pair<double, double>> small;
   std::size_t next = 0;
   for (std::size_t b = 0; b < n_bins; ++b) {
@@ -159,9 +159,9 @@ StructureFactor structure_factor(const Packing& packing, const StructureFactorSe
       sum += s;
       if (mode.k <= settings.fit_to) small.emplace_back(mode.k, s);
     }
-    out.k.push_back((static_cast<double>(b) + 0.5) * settings.bin_width);
-    out.modes.push_back(bins[b].size());
-    out.s.push_back(bins[b].empty() ? not_a_number : sum / static_cast<double>(bins[b].size()));
+    result.k.push_back((static_cast<double>(b) + 0.5) * settings.bin_width);
+    result.modes.push_back(bins[b].size());
+    result.s.push_back(bins[b].empty() ? not_a_number : sum / static_cast<double>(bins[b].size()));
   }
   std::ranges::sort(small);
   LineToZero of_squares, of_line;
@@ -169,11 +169,11 @@ StructureFactor structure_factor(const Packing& packing, const StructureFactorSe
     of_squares.add(k * k, s);
     of_line.add(k, s);
   }
-  out.s_0_of_squares = of_squares.value();
-  out.s_0_of_line = of_line.value();
-  out.fitted_from = small.empty() ? not_a_number : small.front().first;
-  out.fitted_modes = small.size();
-  return out;
+  result.s_0_of_squares = of_squares.value();
+  result.s_0_of_line = of_line.value();
+  result.fitted_from = small.empty() ? not_a_number : small.front().first;
+  result.fitted_modes = small.size();
+  return result;
 }
 
 }  // namespace jostle::inline structure

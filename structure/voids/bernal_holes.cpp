@@ -22,13 +22,15 @@ class HoleFiller {
         tetrahedra_(tetrahedra),
         first_(packing.centres.size() + 1, 0),
         taken_(tetrahedra.size(), false) {
-    for (const DelaunayTetrahedron& one : tetrahedra) ++first_[one.spheres.front() + 1];
+    for (const DelaunayTetrahedron& tetrahedron : tetrahedra)
+      ++first_[tetrahedron.spheres.front() + 1];
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
   }
 
   void take_if_filled(const HoleCandidate& candidate) {
-    const auto within = free_within(candidate.spheres);
-    if (fills(within, candidate.spheres.size())) take(candidate.kind, candidate.spheres, within);
+    const auto interior = free_within(candidate.spheres);
+    if (fills(interior, candidate.spheres.size()))
+      take(candidate.kind, candidate.spheres, interior);
   }
 
   void take_tetrahedra(const BondGraph& bonds) {
@@ -75,39 +77,41 @@ class HoleFiller {
 
   // Tetrahedra fill a polyhedron whose corners all lie on its surface if they are joined by
   // their faces and leave 2 n_corners - 4 triangles outside, as Euler's formula has it.
-  bool fills(const std::vector<std::uint32_t>& within, std::size_t n_corners) const {
+  bool fills(const std::vector<std::uint32_t>& interior, std::size_t n_corners) const {
     std::vector<std::pair<Face, std::uint32_t>> faces;
-    for (std::uint32_t k = 0; k < within.size(); ++k) {
-      const auto& c = tetrahedra_[within[k]].spheres;
+    for (std::uint32_t k = 0; k < interior.size(); ++k) {
+      const auto& c = tetrahedra_[interior[k]].spheres;
       for (const Face& face : {Face{c[0], c[1], c[2]}, Face{c[0], c[1], c[3]},
                                Face{c[0], c[2], c[3]}, Face{c[1], c[2], c[3]}})
         faces.emplace_back(face, k);
     }
     std::ranges::sort(faces);
-    std::vector<std::uint32_t> group(within.size());
+    std::vector<std::uint32_t> group(interior.size());
     std::iota(group.begin(), group.end(), 0U);
     std::size_t inner = 0;
     for (std::size_t f = 1; f < faces.size(); ++f) {
       if (faces[f].first != faces[f - 1].first) continue;
       ++inner;
-      const std::uint32_t from = group[faces[f].second], to = group[faces[f - 1].second];
-      std::ranges::replace(group, from, to);
+      const std::uint32_t first_group = group[faces[f].second],
+                          second_group = group[faces[f - 1].second];
+      std::ranges::replace(group, first_group, second_group);
     }
-    const bool together = std::ranges::all_of(group, [&](auto g) { return g == group.front(); });
-    return !within.empty() && together && faces.size() - 2 * inner == 2 * n_corners - 4;
+    const bool is_one_group =
+        std::ranges::all_of(group, [&](auto g) { return g == group.front(); });
+    return !interior.empty() && is_one_group && faces.size() - 2 * inner == 2 * n_corners - 4;
   }
 
   void take(HoleKind kind, const std::vector<std::uint32_t>& spheres,
-            const std::vector<std::uint32_t>& within) {
+            const std::vector<std::uint32_t>& interior) {
     const Boundary boundary(packing_.container);
     BernalHole hole{kind, spheres, 0, {}};
-    const Vec3 origin = tetrahedra_[within.front()].centroid;
+    const Vec3 origin = tetrahedra_[interior.front()].centroid;
     Vec3 moment;
-    for (const std::uint32_t t : within) {
+    for (const std::uint32_t t : interior) {
       taken_[t] = true;
-      const DelaunayTetrahedron& one = tetrahedra_[t];
-      moment = moment + one.volume * separation(boundary, one.centroid, origin);
-      hole.volume += one.volume;
+      const DelaunayTetrahedron& tetrahedron = tetrahedra_[t];
+      moment = moment + tetrahedron.volume * separation(boundary, tetrahedron.centroid, origin);
+      hole.volume += tetrahedron.volume;
     }
     const Vec3 centroid = origin + (hole.volume > 0 ? 1 / hole.volume : 0) * moment;
     hole.centroid = wrapped(boundary, centroid);
@@ -121,8 +125,8 @@ class HoleFiller {
   std::vector<BernalHole> holes_;
 };
 
-double part(double some, double all) {
-  return all > 0 ? some / all : std::numeric_limits<double>::quiet_NaN();
+double part(double count, double all) {
+  return all > 0 ? count / all : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace

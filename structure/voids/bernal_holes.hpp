@@ -54,11 +54,12 @@ struct BondLengths {
   bool operator==(const BondLengths&) const = default;
 
   static constexpr auto fields() {
-    return std::tuple{
-        field("first", &BondLengths::first, Number{above(1, 2), "diameters"}, "First bond length"),
-        field("last", &BondLengths::last, Number{above(1, 2), "diameters"}, "Last bond length"),
-        field("step", &BondLengths::step, Number{between(0.001, 1), "diameters"},
-              "Between bond lengths")};
+    return std::tuple{field("first", &BondLengths::first,
+                            Number{left_open_range(1, 2), "diameters"}, "First bond length"),
+                      field("last", &BondLengths::last, Number{left_open_range(1, 2), "diameters"},
+                            "Last bond length"),
+                      field("step", &BondLengths::step, Number{closed_range(0.001, 1), "diameters"},
+                            "Between bond lengths")};
   }
 };
 

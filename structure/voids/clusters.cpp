@@ -47,9 +47,9 @@ double independent_variance(const std::vector<std::uint32_t>& members, double n)
     squares += c * c;
   }
   const double clusters = sum / n;
-  const double apart = clusters * clusters * n - squares;
-  return apart > 0 ? apart / (clusters * (clusters - 1) * n)
-                   : std::numeric_limits<double>::quiet_NaN();
+  const double denominator = clusters * clusters * n - squares;
+  return denominator > 0 ? denominator / (clusters * (clusters - 1) * n)
+                         : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Variance of single cells, each counted as often as clusters have it: what is to be expected of
@@ -63,8 +63,8 @@ double variance_of_members(const std::vector<std::uint32_t>& members, const Voro
     sum += c * cells.volumes[i] / sphere_volume;
   }
   for (std::size_t i = 0; i < members.size(); ++i) {
-    const double apart = cells.volumes[i] / sphere_volume - sum / number;
-    squares += members[i] * apart * apart;
+    const double deviation = cells.volumes[i] / sphere_volume - sum / number;
+    squares += members[i] * deviation * deviation;
   }
   const double independent = number - squared_numbers / number;
   return independent > 0 ? squares / independent : std::numeric_limits<double>::quiet_NaN();
@@ -74,7 +74,7 @@ double variance_of_members(const std::vector<std::uint32_t>& members, const Voro
 
 ClusterVolumes cluster_volumes(const Packing& packing, const VoronoiCells& cells,
                                std::uint32_t largest,
-                               const std::function<bool(std::uint32_t)>& around) {
+                               const std::function<bool(std::uint32_t)>& is_counted) {
   largest = std::min(largest, static_cast<std::uint32_t>(cells.size() / 2));
   ClusterVolumes found{.cells = sizes(largest),
                        .mean = {},
@@ -90,10 +90,11 @@ ClusterVolumes cluster_volumes(const Packing& packing, const VoronoiCells& cells
   std::vector<std::pair<double, std::uint32_t>> near;     // distance squared, sphere
   std::uint32_t number = 0;
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
-    if (!around(i)) continue;
+    if (!is_counted(i)) continue;
     ++number;
     near = {{0, i}};
-    finder.around(i, [&](std::uint32_t j, Vec3, double squared) { near.emplace_back(squared, j); });
+    finder.visit_neighbours(
+        i, [&](std::uint32_t j, Vec3, double squared) { near.emplace_back(squared, j); });
     const std::size_t n = std::min<std::size_t>(near.size(), largest);
     std::ranges::partial_sort(near, near.begin() + static_cast<std::ptrdiff_t>(n));
     double volume = 0;

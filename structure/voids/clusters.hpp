@@ -25,13 +25,13 @@ struct ClusterVolumes {
 };
 
 /// A cluster is a cell and those of the n - 1 centres nearest to its own (equally far ones in order
-/// of their index), one around every cell that `around` chooses, as far as all of its cells are
+/// of their index), one around every cell that `is_counted` chooses, as far as all of its cells are
 /// whole: those that reach a cell cut by floor, lid or sides, or a second image of one of theirs,
 /// are left out. Sizes up to `largest`, or half of all spheres. Clusters share cells with their
 /// neighbours; the variance is over their number less 1, NaN below two. Clusters of discs:
 /// Lechenault et al. 2006, doi:10.1088/1742-5468/2006/07/P07009.
 ClusterVolumes cluster_volumes(const Packing& packing, const VoronoiCells& cells,
                                std::uint32_t largest,
-                               const std::function<bool(std::uint32_t)>& around);
+                               const std::function<bool(std::uint32_t)>& is_counted);
 
 }  // namespace jostle::inline structure

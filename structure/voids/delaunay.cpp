@@ -83,12 +83,12 @@ std::vector<DelaunayTetrahedron> from_first_cells(const Packing& packing,
 // so where five centres are so near a common sphere that cells differ in what meets there.
 bool all_agree(const VoronoiCells& cells, const std::vector<DelaunayTetrahedron>& found) {
   std::vector<std::size_t> first(cells.size() + 1, 0);  // those with a sphere as first
-  for (const DelaunayTetrahedron& one : found) ++first[one.spheres.front() + 1];
+  for (const DelaunayTetrahedron& tetrahedron : found) ++first[tetrahedron.spheres.front() + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
   const auto is_found = [&](const std::array<std::uint32_t, 4>& spheres) {
     const std::uint32_t least = spheres.front();
-    const auto some = std::span(found).subspan(first[least], first[least + 1] - first[least]);
-    return std::ranges::find(some, spheres, &DelaunayTetrahedron::spheres) != some.end();
+    const auto group = std::span(found).subspan(first[least], first[least + 1] - first[least]);
+    return std::ranges::find(group, spheres, &DelaunayTetrahedron::spheres) != group.end();
   };
   std::size_t sightings = 0;
   for (std::uint32_t i = 0; i < cells.size(); ++i) {

@@ -30,11 +30,11 @@ Square canonical(Square square) {
 // Its edges that are bonds: [0][1] joins its first two spheres.
 using BondsOf = std::array<std::array<bool, 4>, 4>;
 
-BondsOf bonds_of(const DelaunayTetrahedron& one, const BondGraph& bonds) {
+BondsOf bonds_of(const DelaunayTetrahedron& tetrahedron, const BondGraph& bonds) {
   BondsOf bonded{};
   for (std::size_t k = 0; k < 4; ++k)
     for (std::size_t l = k + 1; l < 4; ++l)
-      bonded[k][l] = bonded[l][k] = bonds.bonded(one.spheres[k], one.spheres[l]);
+      bonded[k][l] = bonded[l][k] = bonds.bonded(tetrahedron.spheres[k], tetrahedron.spheres[l]);
   return bonded;
 }
 
@@ -89,7 +89,7 @@ class Candidates {
   // Holes with a square.
   void add_around(const Square& square) {
     for (std::size_t k = 0; k < 4; ++k)
-      bonds_.bonded_to_both(square[k], square[(k + 1) % 4], over_[k]);
+      bonds_.bonded_to_both(square[k], square[(k + 1) % 4], common_[k]);
     add_half_octahedra(square);
     add_prisms(square);
     add_antiprisms(square);
@@ -112,9 +112,10 @@ class Candidates {
 
   // In the order in which holes are taken.
   std::vector<HoleCandidate> sorted() && {
-    const auto key = [](const HoleCandidate& one) {
+    const auto key = [](const HoleCandidate& candidate) {
       using Key = std::tuple<int, double, const std::vector<std::uint32_t>&>;
-      return Key(-static_cast<int>(one.kind), one.gap, one.spheres);  // largest first
+      return Key(-static_cast<int>(candidate.kind), candidate.gap,
+                 candidate.spheres);  // largest first
     };
     std::ranges::sort(found_, {}, key);
     const auto repeated = std::ranges::unique(found_, {}, key);
@@ -125,7 +126,7 @@ class Candidates {
  private:
   // A square, and a sphere bonded to all four.
   void add_half_octahedra(const Square& q) {
-    for (const std::uint32_t p : over_[0])
+    for (const std::uint32_t p : common_[0])
       if (bonds_.bonded(p, q[2]) && bonds_.bonded(p, q[3]))
         add(HoleKind::half_octahedron, std::array{q[0], q[1], q[2], q[3], p}, 8);
   }
@@ -133,21 +134,21 @@ class Candidates {
   // Triangles on opposite edges of a square, their tips bonded.
   void add_prisms(const Square& q) {
     for (const std::size_t k : {0, 1}) {
-      for (const std::uint32_t tip : over_[k])
-        for (const std::uint32_t other : over_[k + 2])
-          if (bonds_.bonded(tip, other))
-            add(HoleKind::trigonal_prism, std::array{q[0], q[1], q[2], q[3], tip, other}, 9);
+      for (const std::uint32_t tip : common_[k])
+        for (const std::uint32_t sphere : common_[k + 2])
+          if (bonds_.bonded(tip, sphere))
+            add(HoleKind::trigonal_prism, std::array{q[0], q[1], q[2], q[3], tip, sphere}, 9);
     }
   }
 
   // A second square, each corner of it bonded to the ends of an edge of the first.
   void add_antiprisms(const Square& q) {
-    for (const std::uint32_t a : over_[0]) {
-      for (const std::uint32_t b : over_[1]) {
+    for (const std::uint32_t a : common_[0]) {
+      for (const std::uint32_t b : common_[1]) {
         if (!bonds_.bonded(a, b)) continue;
-        for (const std::uint32_t c : over_[2]) {
+        for (const std::uint32_t c : common_[2]) {
           if (!bonds_.bonded(b, c)) continue;
-          for (const std::uint32_t d : over_[3])
+          for (const std::uint32_t d : common_[3])
             if (bonds_.bonded(c, d) && bonds_.bonded(d, a))
               add(HoleKind::archimedean_antiprism, std::array{q[0], q[1], q[2], q[3], a, b, c, d},
                   16);
@@ -160,10 +161,10 @@ class Candidates {
   std::vector<std::array<std::uint32_t, 2>> tips(std::uint32_t a, std::uint32_t b, std::uint32_t c,
                                                  std::uint32_t d) {
     std::vector<std::array<std::uint32_t, 2>> pairs;
-    std::vector<std::uint32_t>& over = over_[0];
-    bonds_.bonded_to_both(a, b, over);
-    for (const std::uint32_t e : over)
-      for (const std::uint32_t f : over)
+    std::vector<std::uint32_t>& remaining = common_[0];
+    bonds_.bonded_to_both(a, b, remaining);
+    for (const std::uint32_t e : remaining)
+      for (const std::uint32_t f : remaining)
         if (bonds_.bonded(e, c) && bonds_.bonded(f, d) && bonds_.bonded(e, f))
           pairs.push_back({e, f});
     return pairs;
@@ -192,25 +193,26 @@ class Candidates {
   const Packing& packing_;
   const BondGraph& bonds_;
   std::vector<HoleCandidate> found_;
-  std::array<std::vector<std::uint32_t>, 4> over_;  // spheres bonded to both ends of an edge
+  std::array<std::vector<std::uint32_t>, 4> common_;  // spheres bonded to both ends of an edge
 };
 
 }  // namespace
 
 std::vector<Edge> edges_of(const Packing& packing,
                            const std::vector<DelaunayTetrahedron>& tetrahedra) {
-  std::vector<std::vector<std::uint32_t>> above(packing.centres.size());  // ends, by beginning
-  for (const DelaunayTetrahedron& one : tetrahedra) {
+  std::vector<std::vector<std::uint32_t>> bond_ends(packing.centres.size());  // ends, by beginning
+  for (const DelaunayTetrahedron& tetrahedron : tetrahedra) {
     for (std::size_t k = 0; k < 4; ++k) {
-      auto& ends = above[one.spheres[k]];
+      auto& ends = bond_ends[tetrahedron.spheres[k]];
       for (std::size_t l = k + 1; l < 4; ++l)
-        if (std::ranges::find(ends, one.spheres[l]) == ends.end()) ends.push_back(one.spheres[l]);
+        if (std::ranges::find(ends, tetrahedron.spheres[l]) == ends.end())
+          ends.push_back(tetrahedron.spheres[l]);
     }
   }
   std::vector<Edge> edges;
-  for (std::uint32_t i = 0; i < above.size(); ++i) {
-    std::ranges::sort(above[i]);
-    for (const std::uint32_t j : above[i])
+  for (std::uint32_t i = 0; i < bond_ends.size(); ++i) {
+    std::ranges::sort(bond_ends[i]);
+    for (const std::uint32_t j : bond_ends[i])
       edges.push_back({i, j, std::sqrt(distance_squared(packing, i, j))});
   }
   return edges;
@@ -247,9 +249,9 @@ std::size_t BondGraph::count_within(std::span<const std::uint32_t> spheres) cons
 }
 
 void BondGraph::bonded_to_both(std::uint32_t i, std::uint32_t j,
-                               std::vector<std::uint32_t>& both) const {
-  both.clear();
-  std::ranges::set_intersection(bonded_to(i), bonded_to(j), std::back_inserter(both));
+                               std::vector<std::uint32_t>& common) const {
+  common.clear();
+  std::ranges::set_intersection(bonded_to(i), bonded_to(j), std::back_inserter(common));
 }
 
 std::vector<HoleCandidate> hole_candidates(const Packing& packing,
@@ -257,10 +259,10 @@ std::vector<HoleCandidate> hole_candidates(const Packing& packing,
                                            const BondGraph& bonds) {
   Candidates candidates(packing, bonds);
   Squares squares(bonds);
-  for (const DelaunayTetrahedron& one : tetrahedra) {
-    const BondsOf bonded = bonds_of(one, bonds);
-    squares.add_edges(one.spheres, bonded);
-    candidates.add_dodecahedra(one.spheres, bonded);
+  for (const DelaunayTetrahedron& tetrahedron : tetrahedra) {
+    const BondsOf bonded = bonds_of(tetrahedron, bonds);
+    squares.add_edges(tetrahedron.spheres, bonded);
+    candidates.add_dodecahedra(tetrahedron.spheres, bonded);
   }
   for (const Square& square : std::move(squares).found()) candidates.add_around(square);
   return std::move(candidates).sorted();

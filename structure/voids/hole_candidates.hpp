@@ -34,8 +34,8 @@ class BondGraph {
   bool all_bonded(const std::array<std::uint32_t, 4>& spheres) const;
   /// Number of bonded pairs of some spheres.
   std::size_t count_within(std::span<const std::uint32_t> spheres) const;
-  /// Spheres bonded to both, ascending, in place of what `both` holds.
-  void bonded_to_both(std::uint32_t i, std::uint32_t j, std::vector<std::uint32_t>& both) const;
+  /// Spheres bonded to both, ascending, in place of what `common` holds.
+  void bonded_to_both(std::uint32_t i, std::uint32_t j, std::vector<std::uint32_t>& common) const;
 
  private:
   std::span<const std::uint32_t> bonded_to(std::uint32_t i) const {

@@ -54,8 +54,8 @@ Pore merged(const Boundary& boundary, const VoronoiCells& cells, const std::vect
   for (const std::uint32_t k : cluster) {
     shift = shift + separation(boundary, found[k].centre, first);
     radius += found[k].radius;
-    const auto others = cells.owners_of(*found[k].vertex);
-    owners.insert(owners.end(), others.begin(), others.end());
+    const auto second_owners = cells.owners_of(*found[k].vertex);
+    owners.insert(owners.end(), second_owners.begin(), second_owners.end());
     owners.push_back(found[k].cell);
   }
   std::ranges::sort(owners);
@@ -98,14 +98,14 @@ double filled_by(const Boundary& boundary, const Region& region, Vec3 r) {
 // spheres of radius R do where all lengths are divided by sigma.
 double filled_part(const Packing& packing, const Region& region, double sigma) {
   if (sigma == 0) return 0;
-  const double by = 1 / sigma;
-  const Region larger{by * region.low, by * region.high, by * region.from_sides};
+  const double factor = 1 / sigma;
+  const Region larger{factor * region.low, factor * region.high, factor * region.from_sides};
   Boundary room(packing.container);
-  room.width_x *= by;
-  room.width_y *= by;
-  room.height *= by;
+  room.width_x *= factor;
+  room.width_y *= factor;
+  room.height *= factor;
   double filled = 0;
-  for (const Vec3& r : packing.centres) filled += filled_by(room, larger, by * r);
+  for (const Vec3& r : packing.centres) filled += filled_by(room, larger, factor * r);
   return filled * sigma * sigma * sigma / region.volume(packing.container);
 }
 
@@ -148,10 +148,10 @@ void draw_spheres(const Packing& packing, const Region& region, std::uint64_t po
     grid.for_each_near(r, [&](std::uint32_t i) {
       nearest = std::min(nearest, squared_distance(boundary, r, packing.centres[i]));
     });
-    for (RandomSpheres& one : of_radius) {
-      if (room < one.radius) continue;
-      ++one.counted;
-      one.empty += nearest >= one.radius * one.radius ? 1 : 0;
+    for (RandomSpheres& spheres : of_radius) {
+      if (room < spheres.radius) continue;
+      ++spheres.counted;
+      spheres.empty += nearest >= spheres.radius * spheres.radius ? 1 : 0;
     }
   }
 }
@@ -171,11 +171,11 @@ std::vector<Pore> pores(const Packing& packing, const VoronoiCells& cells, doubl
     if (taken[k]) continue;
     cluster = {k};
     taken[k] = true;
-    for (std::size_t at = 0; at < cluster.size(); ++at) {
-      const Vec3 here = found[cluster[at]].centre;
-      grid.for_each_within(here, merge, [&](std::uint32_t j) {
+    for (std::size_t index = 0; index < cluster.size(); ++index) {
+      const Vec3 centre = found[cluster[index]].centre;
+      grid.for_each_within(centre, merge, [&](std::uint32_t j) {
         if (taken[j]) return;
-        if (squared_distance(boundary, here, found[j].centre) > merge * merge) return;
+        if (squared_distance(boundary, centre, found[j].centre) > merge * merge) return;
         taken[j] = true;
         cluster.push_back(j);
       });
@@ -197,7 +197,7 @@ Site site_of(const Pore& pore, double tolerance) {
   const double tetrahedral = std::sqrt(1.5) - 1, octahedral = std::numbers::sqrt2 - 1;
   if (std::abs(xi_of(pore) - tetrahedral) <= tolerance) return Site::tetrahedral;
   if (std::abs(xi_of(pore) - octahedral) <= tolerance) return Site::octahedral;
-  return Site::other;
+  return Site::irregular;
 }
 
 PoreDistribution pore_distribution(std::span<const Pore> pores, double bin_width, double xi_max) {

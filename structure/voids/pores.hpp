@@ -33,7 +33,7 @@ std::vector<Pore> pores_in(const std::vector<Pore>& all, const Container& contai
 
 /// Sites of close packing. A radius within `tolerance` of xi = sqrt(3/2) - 1 (tetrahedral) or
 /// sqrt(2) - 1 (octahedral).
-enum class Site { other, tetrahedral, octahedral };
+enum class Site { irregular, tetrahedral, octahedral };
 Site site_of(const Pore& pore, double tolerance = 0.02);
 
 /// Distributions of pore sizes: counts a unit of xi, of v = xi^3 and of ln v, as densities whose

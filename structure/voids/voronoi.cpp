@@ -56,15 +56,15 @@ class CellReader {
   // Returns the volume, a pyramid on every face.
   double read_faces() {
     double volume = 0;
-    std::size_t at = 0;
+    std::size_t index = 0;
     for (const int neighbour : neighbours_) {
-      const auto n_corners = static_cast<std::size_t>(face_vertices_[at++]);
-      const Vec3 first = corner(face_vertices_[at]);
+      const auto n_corners = static_cast<std::size_t>(face_vertices_[index++]);
+      const Vec3 first = corner(face_vertices_[index]);
       Vec3 normal;  // length is twice the area
-      for (std::size_t k = at + 2; k < at + n_corners; ++k)
+      for (std::size_t k = index + 2; k < index + n_corners; ++k)
         normal = normal +
                  cross(corner(face_vertices_[k - 1]) - first, corner(face_vertices_[k]) - first);
-      at += n_corners;
+      index += n_corners;
       found_.faces.push_back(
           {neighbour < 0 ? container_side : static_cast<std::uint32_t>(neighbour),
            0.5 * std::sqrt(norm_squared(normal))});
@@ -105,10 +105,10 @@ class CellReader {
   // Calls visit(vertex, neighbour) for every corner of every face.
   template <class Visit>
   void for_each_corner(Visit visit) const {
-    std::size_t at = 0;
+    std::size_t index = 0;
     for (const int neighbour : neighbours_) {
-      for (int left = face_vertices_[at++]; left > 0; --left)
-        visit(static_cast<std::size_t>(face_vertices_[at++]), neighbour);
+      for (int left = face_vertices_[index++]; left > 0; --left)
+        visit(static_cast<std::size_t>(face_vertices_[index++]), neighbour);
     }
   }
 

@@ -54,11 +54,11 @@ void add_windows(const CostOfObservable& cost, Table& table) {
   if (cost.windows.empty()) return;
   std::vector<std::string> names;
   std::vector<double> differences, errors, dof;
-  for (const WindowEffect& one : cost.windows) {
-    names.push_back(one.name);
-    differences.push_back(one.difference.bias);
-    errors.push_back(one.difference.error);
-    dof.push_back(degrees_of_freedom(one.difference.pairs));
+  for (const WindowEffect& effect : cost.windows) {
+    names.push_back(effect.name);
+    differences.push_back(effect.difference.bias);
+    errors.push_back(effect.difference.error);
+    dof.push_back(degrees_of_freedom(effect.difference.pairs));
   }
   const std::vector<std::string> window = {"window"};
   const std::string& units = cost.label.units;
@@ -104,13 +104,13 @@ CostStudy::CostStudy(const ResultsFile& file, std::vector<PilotSetting> settings
 void CostStudy::read_times(const ResultsFile& file) {
   std::vector<Work> work(settings_.size());  // time of all realizations that did not fail
   std::vector<double> done(settings_.size());
-  for (const RealizationSummary& one : file.realizations()) {
-    if (one.status == RealizationStatus::failed) {
-      failed_.push_back(one);
+  for (const RealizationSummary& realization : file.realizations()) {
+    if (realization.status == RealizationStatus::failed) {
+      failed_.push_back(realization);
       continue;
     }
-    work[one.id.point] += one.work;
-    ++done[one.id.point];
+    work[realization.id.point] += realization.work;
+    ++done[realization.id.point];
   }
   const std::uint64_t first = pilot_taps_ / 2 + 1;  // first tap of the second half
   for (std::uint32_t p = 0; p < settings_.size(); ++p) {
@@ -139,8 +139,9 @@ double CostStudy::realization_seconds(std::size_t setting) const {
 
 std::vector<std::uint64_t> CostStudy::has_beds() const {
   std::vector<std::uint64_t> has;
-  for (const PilotSetting& one : settings_) {
-    has.push_back(one.part != PilotSetting::Part::start && one.part != PilotSetting::Part::spheres);
+  for (const PilotSetting& setting : settings_) {
+    has.push_back(setting.part != PilotSetting::Part::start &&
+                  setting.part != PilotSetting::Part::spheres);
   }
   return has;
 }
@@ -152,13 +153,13 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Colum
   for (std::uint32_t p = 0; p < settings_.size(); ++p) {
     values.push_back(file.block(p, label.name, {1, pilot_taps_ + 1}, {0, replicates_}));
   }
-  const auto at = [&](std::size_t setting, std::uint64_t tap) {
+  const auto value_at = [&](std::size_t setting, std::uint64_t tap) {
     return std::span(values[setting]).subspan((tap - 1) * replicates_, replicates_);
   };
   const MostComplete best = most_complete(settings_);
   for (std::size_t p = 0; p < settings_.size(); ++p) {
     for (std::uint64_t tap = 1; tap <= pilot_taps_; ++tap) {
-      const PairedBias bias = paired_bias(at(p, tap), at(best.last, tap));
+      const PairedBias bias = paired_bias(value_at(p, tap), value_at(best.last, tap));
       cost.bias_by_tap.push_back(bias.bias);
       cost.bias_error_by_tap.push_back(bias.error);
       if (tap == pilot_taps_) cost.biases.push_back(bias);
@@ -167,25 +168,27 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Colum
     const bool is_choice = settings_[p].part != PilotSetting::Part::start;
     cost.setting_costs.push_back({.bias = is_choice ? cost.biases.back().bias : not_a_number,
                                   .bias_error = cost.biases.back().error,
-                                  .sigma = deviation(at(p, pilot_taps_)),
+                                  .sigma = deviation(value_at(p, pilot_taps_)),
                                   .realization_seconds = realization_seconds(p),
-                                  .values = number_of(at(p, pilot_taps_)),
+                                  .values = number_of(value_at(p, pilot_taps_)),
                                   .pairs = cost.biases.back().pairs});
   }
   for (std::size_t p = 0; p < settings_.size() && middle_tap() > 0; ++p) {
-    cost.growths.push_back(bias_growth(at(p, middle_tap()), at(best.last, middle_tap()),
-                                       at(p, pilot_taps_), at(best.last, pilot_taps_)));
+    cost.growths.push_back(bias_growth(value_at(p, middle_tap()), value_at(best.last, middle_tap()),
+                                       value_at(p, pilot_taps_), value_at(best.last, pilot_taps_)));
   }
   cost.windows = read_windows(file, label.name);
-  cost.last_step = paired_bias(at(best.last, pilot_taps_), at(best.before, pilot_taps_));
-  cost.remainder =
-      is_seen(cost.last_step)
-          ? remainder(at(0, pilot_taps_), at(best.before, pilot_taps_), at(best.last, pilot_taps_))
-          : Remainder{0, not_a_number, not_a_number};
-  const Pilot pilot{.reference = best.last,
-                    .last_step = cost.last_step,
-                    .step_before = paired_bias(at(best.before, pilot_taps_), at(0, pilot_taps_)),
-                    .has_beds = has_beds()};
+  cost.last_step =
+      paired_bias(value_at(best.last, pilot_taps_), value_at(best.second_last, pilot_taps_));
+  cost.remainder = is_seen(cost.last_step) ? remainder(value_at(0, pilot_taps_),
+                                                       value_at(best.second_last, pilot_taps_),
+                                                       value_at(best.last, pilot_taps_))
+                                           : Remainder{0, not_a_number, not_a_number};
+  const Pilot pilot{
+      .reference = best.last,
+      .last_step = cost.last_step,
+      .step_before = paired_bias(value_at(best.second_last, pilot_taps_), value_at(0, pilot_taps_)),
+      .has_beds = has_beds()};
   pool_sigma(cost.setting_costs, pilot);
   cost.limits = at_limits(cost.setting_costs, pilot);
   cost.setting_costs[best.last].bias_error = doubt_of_reference(cost);
@@ -193,15 +196,15 @@ CostOfObservable CostStudy::read_observable(const ResultsFile& file, const Colum
 }
 
 std::vector<WindowEffect> CostStudy::read_windows(const ResultsFile& file,
-                                                  const std::string& of) const {
+                                                  const std::string& observable) const {
   std::vector<WindowEffect> effects;
   const TapRange last{pilot_taps_, pilot_taps_ + 1};
-  for (const OtherWindow& other : windows_) {
-    if (other.of != of) continue;
-    const std::vector<double> own = file.block(0, of, last, {0, replicates_});
+  for (const OtherWindow& window : windows_) {
+    if (window.name != observable) continue;
+    const std::vector<double> own = file.block(0, observable, last, {0, replicates_});
     effects.push_back(
-        {window_name(other.observable),
-         paired_bias(file.block(0, other.observable.name, last, {0, replicates_}), own)});
+        {window_name(window.observable),
+         paired_bias(file.block(0, window.observable.name, last, {0, replicates_}), own)});
   }
   return effects;
 }
@@ -234,11 +237,11 @@ std::vector<Table> CostStudy::tables(std::uint32_t scene_realizations) const {
       statistical.push_back(sigma.back() / std::sqrt(static_cast<double>(scene_realizations)));
     }
     std::vector<double> growth, growth_error, growth_dof, growth_tails;
-    for (const Growth& one : cost.growths) {
-      growth.push_back(one.change.bias);
-      growth_error.push_back(one.change.error);
-      growth_dof.push_back(degrees_of_freedom(one.change.pairs));
-      growth_tails.push_back(one.tails);
+    for (const Growth& change : cost.growths) {
+      growth.push_back(change.change.bias);
+      growth_error.push_back(change.change.error);
+      growth_dof.push_back(degrees_of_freedom(change.change.pairs));
+      growth_tails.push_back(change.tails);
     }
     const std::string& units = cost.label.units;
     Table table{.name = "cost/" + cost.label.name};

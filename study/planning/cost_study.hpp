@@ -71,7 +71,8 @@ class CostStudy {
   /// The settings that use the beds of the scene's own.
   std::vector<std::uint64_t> has_beds() const;
   CostOfObservable read_observable(const ResultsFile& file, const Column& label) const;
-  std::vector<WindowEffect> read_windows(const ResultsFile& file, const std::string& of) const;
+  std::vector<WindowEffect> read_windows(const ResultsFile& file,
+                                         const std::string& observable) const;
 
   std::vector<PilotSetting> settings_;
   std::vector<OtherWindow> windows_;

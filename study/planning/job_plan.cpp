@@ -53,8 +53,8 @@ JobPlan plan_jobs(const SceneCost& cost, const JobRequest& request) {
   plan.shards_a_task = (request.shards + request.most_tasks - 1) / request.most_tasks;
   plan.tasks = (request.shards + plan.shards_a_task - 1) / plan.shards_a_task;
   plan.most_realizations = (all + request.shards - 1) / request.shards;
-  for (const Seconds one : cost.realization)
-    plan.core_time += one * static_cast<double>(cost.realizations);
+  for (const Seconds duration : cost.realization)
+    plan.core_time += duration * static_cast<double>(cost.realizations);
   Seconds reserved{0};
   for (std::uint32_t task = 0; task < plan.tasks; ++task) {
     Seconds time{0};
@@ -94,13 +94,13 @@ std::optional<JobRequest> better_layout(const SceneCost& cost, const JobRequest&
     const std::uint64_t most_shards = std::min(all, in_all / cpus);
     // The fewest shards that need no more turns than the most shards do.
     const std::uint64_t turns = (all + most_shards * cpus - 1) / (most_shards * cpus);
-    JobRequest other = request;
-    other.cpus = cpus;
-    other.shards = static_cast<std::uint32_t>((all + turns * cpus - 1) / (turns * cpus));
-    const JobPlan plan = plan_jobs(cost, other);
+    JobRequest alternative = request;
+    alternative.cpus = cpus;
+    alternative.shards = static_cast<std::uint32_t>((all + turns * cpus - 1) / (turns * cpus));
+    const JobPlan plan = plan_jobs(cost, alternative);
     if (plan.longest_task > most_longer * asked.longest_task || plan.efficiency <= best) continue;
     best = plan.efficiency;
-    found = other;
+    found = alternative;
   }
   return found;
 }

@@ -77,14 +77,14 @@ struct TapCost {
 /// For one kind of tap, by strength.
 using CostsByStrength = std::map<double, TapCost>;
 
-TapCost between(const CostsByStrength& costs, double strength) {
-  const auto above = costs.lower_bound(strength);
-  if (above == costs.end()) return costs.rbegin()->second;
-  if (above == costs.begin() || above->first == strength) return above->second;
-  const auto below = std::prev(above);
-  const double share = (strength - below->first) / (above->first - below->first);
-  return {below->second.time + share * (above->second.time - below->second.time),
-          below->second.sweeps + share * (above->second.sweeps - below->second.sweeps)};
+TapCost interpolated(const CostsByStrength& costs, double strength) {
+  const auto upper = costs.lower_bound(strength);
+  if (upper == costs.end()) return costs.rbegin()->second;
+  if (upper == costs.begin() || upper->first == strength) return upper->second;
+  const auto lower = std::prev(upper);
+  const double share = (strength - lower->first) / (upper->first - lower->first);
+  return {lower->second.time + share * (upper->second.time - lower->second.time),
+          lower->second.sweeps + share * (upper->second.sweeps - lower->second.sweeps)};
 }
 
 /// Mechanics whose bed counts as at rest where what is allowed ends, at rest or not.
@@ -101,9 +101,9 @@ class ShortDynamics final : public Dynamics {
   bool settled() const { return settled_; }
 
   DynamicsStatus advance(std::uint64_t units) override {
-    const std::uint64_t before = effort().units;
+    const std::uint64_t units_before = effort().units;
     const DynamicsStatus status = whole_->advance(std::min(units, left_));
-    left_ -= std::min(left_, effort().units - before);
+    left_ -= std::min(left_, effort().units - units_before);
     if (status != DynamicsStatus::running || left_ > 0) return status;
     settled_ = false;
     return DynamicsStatus::capped;
@@ -173,7 +173,7 @@ class Pilot {
  private:
   /// Makes the next row: the start, or a tap.
   TapCost next_row(std::uint64_t budget) {
-    const std::uint64_t before = dynamics_->effort().units;
+    const std::uint64_t units_before = dynamics_->effort().units;
     const auto began = Clock::now();
     dynamics_->allow(budget);
     Slice slice;
@@ -181,7 +181,7 @@ class Pilot {
       slice = realization_->advance(std::max<std::uint64_t>(1, budget));
       moving_time_ += slice.relaxing;
     }
-    const std::uint64_t units = dynamics_->effort().units - before;
+    const std::uint64_t units = dynamics_->effort().units - units_before;
     left_ -= std::min(left_, units);
     return {Clock::now() - began, static_cast<double>(units) / bed_.n_spheres};
   }
@@ -193,7 +193,7 @@ class Pilot {
     for (const Stage& stage : plan_.protocol) {
       if (stage.count == 0) continue;
       const Control strength = control(stage.tap);
-      const TapCost cost = between(costs.at(strength.name), strength.value);
+      const TapCost cost = interpolated(costs.at(strength.name), strength.value);
       const auto n = static_cast<double>(stage.count);
       taps_time += n * cost.time;
       sweeps += n * cost.sweeps;
@@ -293,8 +293,9 @@ std::vector<std::size_t> piloted_stages(const std::vector<Stage>& protocol) {
   // One strength costs the same wherever it comes.
   std::vector<std::size_t> distinct;
   for (const std::size_t stage : stages) {
-    const bool known = std::ranges::any_of(
-        distinct, [&](std::size_t other) { return protocol[other].tap == protocol[stage].tap; });
+    const bool known = std::ranges::any_of(distinct, [&](std::size_t earlier_stage) {
+      return protocol[earlier_stage].tap == protocol[stage].tap;
+    });
     if (!known) distinct.push_back(stage);
   }
   return distinct;

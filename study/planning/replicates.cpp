@@ -5,20 +5,21 @@
 
 namespace jostle::inline study {
 
-double replicates_done(std::span<const RealizationSummary> before,
-                       std::span<const RealizationSummary> after) {
+double replicates_done(std::span<const RealizationSummary> summaries_before,
+                       std::span<const RealizationSummary> summaries_after) {
   std::map<RealizationId, double> known;
-  for (const RealizationSummary& one : before) known[one.id] = one.work.seconds;
+  for (const RealizationSummary& realization : summaries_before)
+    known[realization.id] = realization.work.seconds;
   struct Setting {
     double seconds = 0, gained = 0;
     std::uint64_t realizations = 0;
   };
   std::map<std::uint32_t, Setting> settings;
-  for (const RealizationSummary& one : after) {
-    if (one.status != RealizationStatus::done) continue;
-    Setting& setting = settings[one.id.point];
-    setting.seconds += one.work.seconds;
-    setting.gained += one.work.seconds - known[one.id];
+  for (const RealizationSummary& realization : summaries_after) {
+    if (realization.status != RealizationStatus::done) continue;
+    Setting& setting = settings[realization.id.point];
+    setting.seconds += realization.work.seconds;
+    setting.gained += realization.work.seconds - known[realization.id];
     ++setting.realizations;
   }
   double of_a_replicate = 0, gained = 0;
@@ -34,8 +35,8 @@ std::uint32_t affordable_replicates(std::uint32_t replicates, Seconds budget, Se
   constexpr double most = 1e6;
   if (done <= 0) return spent < budget ? replicates + 1 : replicates;
   const double a_replicate = spent.count() / done;
-  const double more = std::max(0.0, (budget - spent).count() / a_replicate);
-  return replicates + static_cast<std::uint32_t>(std::min(more, most));
+  const double extra = std::max(0.0, (budget - spent).count() / a_replicate);
+  return replicates + static_cast<std::uint32_t>(std::min(extra, most));
 }
 
 }  // namespace jostle::inline study

@@ -13,8 +13,8 @@ namespace jostle::inline study {
 /// Replicates of work between two looks at the realizations, by their processor times: one that was
 /// there before and only gained taps counts as the share that it gained. 0 where nothing was
 /// computed.
-double replicates_done(std::span<const RealizationSummary> before,
-                       std::span<const RealizationSummary> after);
+double replicates_done(std::span<const RealizationSummary> summaries_before,
+                       std::span<const RealizationSummary> summaries_after);
 
 /// Number of replicates in the budget, at the pace of the finished ones; one more to find the pace.
 /// `replicates` are finished.

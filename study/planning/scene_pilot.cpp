@@ -61,9 +61,9 @@ ScenePilot::ScenePilot(const LoadedScene& loaded, const Tell& tell, Repeat repea
     settled_ = settled_ && estimate.settled;
   }
   if (repeat == Repeat::first_point) {
-    const Seconds again = tried(loaded, points_.front(), points_.size()).realization;
-    const Seconds sum = times_.front() + again;
-    if (sum > Seconds{0}) scatter_ = 2 * std::abs((times_.front() - again) / sum);
+    const Seconds repeated = tried(loaded, points_.front(), points_.size()).realization;
+    const Seconds sum = times_.front() + repeated;
+    if (sum > Seconds{0}) scatter_ = 2 * std::abs((times_.front() - repeated) / sum);
     times_.front() = sum / 2;
   }
   for (const Plan& plan : loaded.plans) {
@@ -79,10 +79,10 @@ Seconds ScenePilot::mean_realization() const {
 }
 
 Seconds ScenePilot::realization(std::size_t point) const {
-  const auto above = std::ranges::lower_bound(points_, point) - points_.begin();
+  const auto index = std::ranges::lower_bound(points_, point) - points_.begin();
   const auto last = static_cast<std::ptrdiff_t>(points_.size()) - 1;
-  if (above > last) return times_.back();
-  const auto high = static_cast<std::size_t>(above);
+  if (index > last) return times_.back();
+  const auto high = static_cast<std::size_t>(index);
   if (points_[high] == point) return times_[high];
   const auto left = static_cast<double>(point - points_[high - 1]),
              whole = static_cast<double>(points_[high] - points_[high - 1]);

@@ -20,19 +20,19 @@ namespace fs = std::filesystem;
 /// Numbers in names are compared as numbers: 2.h5 comes before 10.h5.
 bool comes_before(const std::string& a, const std::string& b) {
   const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
-  const auto number_at = [&](const std::string& text, std::size_t at) {
-    std::size_t end = at;
+  const auto number_at = [&](const std::string& text, std::size_t index) {
+    std::size_t end = index;
     while (end < text.size() && is_digit(text[end])) ++end;
-    while (at + 1 < end && text[at] == '0') ++at;
-    return std::pair(text.substr(at, end - at), end);
+    while (index + 1 < end && text[index] == '0') ++index;
+    return std::pair(text.substr(index, end - index), end);
   };
   std::size_t i = 0, j = 0;
   while (i < a.size() && j < b.size()) {
     if (is_digit(a[i]) && is_digit(b[j])) {
-      const auto [one, end_of_one] = number_at(a, i);
-      const auto [other, end_of_other] = number_at(b, j);
-      if (one.size() != other.size()) return one.size() < other.size();
-      if (one != other) return one < other;
+      const auto [first, end_of_one] = number_at(a, i);
+      const auto [second, end_of_other] = number_at(b, j);
+      if (first.size() != second.size()) return first.size() < second.size();
+      if (first != second) return first < second;
       i = end_of_one;
       j = end_of_other;
     } else {
@@ -81,36 +81,36 @@ void gather(Gathered& study, const std::string& path, const LiveLook& look) {
   ShardStatus shard{
       .index = file.shard().index, .state = state_of(status), .path = path, .owner = status.owner};
   if (!file.provenance().empty()) shard.command = file.provenance().back().command_line;
-  for (const RealizationSummary& one : status.realizations) {
-    const std::uint64_t taps = file.study().points[one.id.point].taps, rows = taps + 1;
-    PointWork& point = study.points[one.id.point];
+  for (const RealizationSummary& realization : status.realizations) {
+    const std::uint64_t taps = file.study().points[realization.id.point].taps, rows = taps + 1;
+    PointWork& point = study.points[realization.id.point];
     ++shard.realizations;
     shard.all_taps += taps;
-    shard.taps += one.taps();
-    point.seconds += one.work.seconds;
-    point.rows += one.rows;
-    if (one.status == RealizationStatus::done) ++shard.done;
-    if (one.status == RealizationStatus::failed) ++shard.failed;
-    const bool ended = one.status == RealizationStatus::failed;
-    point.rows_left += ended ? 0 : rows - std::min(one.rows, rows);
+    shard.taps += realization.taps();
+    point.seconds += realization.work.seconds;
+    point.rows += realization.rows;
+    if (realization.status == RealizationStatus::done) ++shard.done;
+    if (realization.status == RealizationStatus::failed) ++shard.failed;
+    const bool ended = realization.status == RealizationStatus::failed;
+    point.rows_left += ended ? 0 : rows - std::min(realization.rows, rows);
   }
   place = std::move(shard);
 }
 
 /// The path of a shard's file, if it is named as that of another shard is: by the last number of
 /// its name.
-std::optional<std::string> path_like(const ShardStatus& other, std::uint32_t index) {
-  const std::size_t name = other.path.find_last_of('/') + 1;  // 0 without a folder
-  const std::size_t last = other.path.find_last_of("0123456789", other.path.rfind('.'));
+std::optional<std::string> path_like(const ShardStatus& model_shard, std::uint32_t index) {
+  const std::size_t name = model_shard.path.find_last_of('/') + 1;  // 0 without a folder
+  const std::size_t last = model_shard.path.find_last_of("0123456789", model_shard.path.rfind('.'));
   if (last == std::string::npos || last < name) return std::nullopt;
   std::size_t first = last;
-  while (first > name && std::isdigit(static_cast<unsigned char>(other.path[first - 1])) != 0)
+  while (first > name && std::isdigit(static_cast<unsigned char>(model_shard.path[first - 1])) != 0)
     --first;
-  const std::string number = other.path.substr(first, last + 1 - first);
-  const std::string padded = fmt::format("{:0{}}", other.index, number.size());
+  const std::string number = model_shard.path.substr(first, last + 1 - first);
+  const std::string padded = fmt::format("{:0{}}", model_shard.index, number.size());
   if (number != padded) return std::nullopt;
-  return other.path.substr(0, first) + fmt::format("{:0{}}", index, number.size()) +
-         other.path.substr(last + 1);
+  return model_shard.path.substr(0, first) + fmt::format("{:0{}}", index, number.size()) +
+         model_shard.path.substr(last + 1);
 }
 
 /// Files that cannot be read still hold shards: those in their names, otherwise any.
@@ -204,14 +204,14 @@ void look_at(KnownStudies& studies, const ResultsFile*& last, const std::string&
 
 std::vector<std::string> results_files(std::span<const std::string> named) {
   std::vector<std::string> files;
-  for (const std::string& one : named) {
+  for (const std::string& path : named) {
     std::error_code unreadable;
-    if (!fs::is_directory(one, unreadable)) {
-      files.push_back(one);
+    if (!fs::is_directory(path, unreadable)) {
+      files.push_back(path);
       continue;
     }
-    const std::vector<std::string> found = files_in(one);
-    if (found.empty()) throw BadInput(fmt::format("{}: no file in it ends in .h5", one));
+    const std::vector<std::string> found = files_in(path);
+    if (found.empty()) throw BadInput(fmt::format("{}: no file in it ends in .h5", path));
     files.insert(files.end(), found.begin(), found.end());
   }
   return files;

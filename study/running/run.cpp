@@ -54,10 +54,10 @@ SceneRun::SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunOb
         "shards, merge them, and resume the merged file with \"until\".");
   }
   const std::string& output = settings.output;
-  const Provenance by = provenance_of_this_run(fmt::to_string(settings.threads));
+  const Provenance provenance = provenance_of_this_run(fmt::to_string(settings.threads));
   std::error_code unreadable;  // a ring of links, a name too long: reported when it is opened
   if (!std::filesystem::exists(output, unreadable) || settings.existing == Existing::replace) {
-    store_ = RunStore::create(output, study_, settings.shard, by,
+    store_ = RunStore::create(output, study_, settings.shard, provenance,
                               settings.take_over || settings.existing == Existing::replace,
                               settings.room, settings.patience);
     return;
@@ -65,14 +65,14 @@ SceneRun::SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunOb
   if (!resumes) throw OutputExists(output);
   retry_failed_ = settings.retry_failed;
   store_ = RunStore::resume(
-      output, [this](const ResultsFile& file) { return study_for(file); }, settings.shard, by,
-      settings.take_over, settings.room, settings.patience);
+      output, [this](const ResultsFile& file) { return study_for(file); }, settings.shard,
+      provenance, settings.take_over, settings.room, settings.patience);
   auto pending = store_->pending(retry_failed_);
   std::ranges::sort(pending);
-  for (const RealizationSummary& one : store_->realizations()) {
-    const bool counts =
-        one.status == RealizationStatus::running && std::ranges::binary_search(pending, one.id);
-    if (counts) taps_recorded_ += one.taps();
+  for (const RealizationSummary& realization : store_->realizations()) {
+    const bool counts = realization.status == RealizationStatus::running &&
+                        std::ranges::binary_search(pending, realization.id);
+    if (counts) taps_recorded_ += realization.taps();
   }
 }
 
@@ -119,7 +119,8 @@ RunSummary SceneRun::run(const std::vector<RealizationId>& pending) {
 
 void SceneRun::fold() {
   const AtEnd end([this] { observer_.stored(); });
-  store_->finish([this](std::uint64_t done, std::uint64_t of) { observer_.storing(done, of); });
+  store_->finish(
+      [this](std::uint64_t done, std::uint64_t total) { observer_.storing(done, total); });
 }
 
 bool SceneRun::compute_until_precise() {

@@ -48,7 +48,8 @@ class Warnings {
     if (engine.relax_start) look_at("/relax_start", *engine.relax_start);
   }
   void look_at_engine(const DiscreteElement& engine) {
-    const double rest = std::visit([](const auto& one) { return one.seconds; }, engine.rest);
+    const double rest =
+        std::visit([](const auto& alternative) { return alternative.seconds; }, engine.rest);
     if (rest > engine.most_seconds) {
       add(finite_text(
           "/engine: a bed rests no sooner than after {:g} s, and is capped after {:g} s: "

@@ -28,10 +28,10 @@ void require(bool holds, const std::string& otherwise) {
   if (!holds) throw SelfCheckFailure(otherwise);
 }
 
-void require_no_overlap(const Packing& packing, const std::string& where) {
+void require_no_overlap(const Packing& packing, const std::string& context) {
   const Overlap overlap = deepest_overlap_brute_force(packing);
   require(overlap.depth <= overlap_bound(packing),
-          finite_text("{}: spheres {} and {} overlap by {:.3g} diameters", where, overlap.first,
+          finite_text("{}: spheres {} and {} overlap by {:.3g} diameters", context, overlap.first,
                       overlap.second, overlap.depth));
 }
 
@@ -150,10 +150,10 @@ std::string run_into_file(const std::string& path, int threads) {
 }
 
 std::string compare_threads(const std::string& folder) {
-  const std::string one = run_into_file(folder + "/one.h5", 1);
+  const std::string single = run_into_file(folder + "/one.h5", 1);
   const std::string two = run_into_file(folder + "/two.h5", 2);
-  require(one == two, "one thread and two made different data");
-  return fmt::format("1 and 2 threads: digest {}...", one.substr(0, 16));
+  require(single == two, "one thread and two made different data");
+  return fmt::format("1 and 2 threads: digest {}...", single.substr(0, 16));
 }
 
 /// Checks that written data are read back unchanged, and that damage is detected.

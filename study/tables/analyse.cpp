@@ -21,7 +21,7 @@ namespace jostle::inline study {
 namespace {
 
 /// Where an analysis finds what is not in its series.
-struct Surroundings {
+struct AnalysisContext {
   const ResultsFile& file;
   std::uint32_t point;
   int threads;
@@ -29,7 +29,7 @@ struct Surroundings {
 };
 
 Table make_table(const ObservableSeries& series, const SteadySettings& settings,
-                 const Surroundings&) {
+                 const AnalysisContext&) {
   const AnalysedSeries analysed = last_taps(series, settings.last, 4, SteadyStateTest::fewest_taps);
   SteadyStateTest test;
   series.for_each({analysed.first_tap, analysed.last_tap + 1},
@@ -38,7 +38,7 @@ Table make_table(const ObservableSeries& series, const SteadySettings& settings,
 }
 
 Table make_table(const ObservableSeries& series, const SpectrumSettings& settings,
-                 const Surroundings&) {
+                 const AnalysisContext&) {
   const AnalysedSeries analysed = last_taps(series, settings.last, 2, fewest_spectrum_taps);
   if (settings.segment && *settings.segment > analysed.n_taps()) {
     throw BadInput(fmt::format("a segment of {} taps is longer than the {} analysed",
@@ -51,14 +51,14 @@ Table make_table(const ObservableSeries& series, const SpectrumSettings& setting
 }
 
 /// A lag of a tap follows the last waiting time.
-void require_reached(const char* what, std::span<const std::uint64_t> taps, std::uint64_t last) {
+void require_reached(const char* subject, std::span<const std::uint64_t> taps, std::uint64_t last) {
   const auto beyond = std::ranges::find_if(taps, [&](std::uint64_t tap) { return tap > last; });
   if (beyond == taps.end()) return;
-  throw BadInput(fmt::format("{} {} is too late: the last possible is {}", what, *beyond, last));
+  throw BadInput(fmt::format("{} {} is too late: the last possible is {}", subject, *beyond, last));
 }
 
 Table make_table(const ObservableSeries& series, const AgeingSettings& settings,
-                 const Surroundings& around) {
+                 const AnalysisContext& context) {
   if (series.n_rows() < 3) throw BadInput("needs two taps");
   require_reached("waiting time", settings.waiting_times, series.n_rows() - 2);
   require_reached("lag", settings.lags, series.n_rows() - 1);
@@ -68,12 +68,12 @@ Table make_table(const ObservableSeries& series, const AgeingSettings& settings,
   TapRows rows{.taps = taps_of(grid), .realizations = series.n_realizations(), .values = {}};
   std::erase_if(rows.taps, [&](std::uint64_t tap) { return tap >= series.n_rows(); });
   rows.values = series.rows(rows.taps);
-  return ageing_table("", series.label(), rows, grid, around.threads);
+  return ageing_table("", series.label(), rows, grid, context.threads);
 }
 
 Table make_table(const ObservableSeries& series, const HysteresisSettings& settings,
-                 const Surroundings& around) {
-  const std::vector<Stage> protocol = stages(around.scenes().at(around.point).protocol);
+                 const AnalysisContext& context) {
+  const std::vector<Stage> protocol = stages(context.scenes().point_scene(context.point).protocol);
   std::uint64_t shortest = std::numeric_limits<std::uint64_t>::max();
   for (const Stage& stage : protocol) shortest = std::min(shortest, stage.count);
   if (protocol.empty()) throw BadInput("the protocol has no taps");
@@ -90,22 +90,22 @@ Table make_table(const ObservableSeries& series, const HysteresisSettings& setti
 }
 
 Table make_table(const ObservableSeries& series, const OrderingSettings& settings,
-                 const Surroundings&) {
+                 const AnalysisContext&) {
   return ordering_of(series, settings).table();
 }
 
 template <class Settings>
-void add_tables(const Surroundings& around, const char* kind,
+void add_tables(const AnalysisContext& context, const char* kind,
                 const std::vector<AnalysisRequest<Settings>>& requests,
                 std::vector<Table>& tables) {
   for (const auto& request : requests) {
-    const ResultsFile& file = around.file;
-    const std::uint32_t point = around.point;
+    const ResultsFile& file = context.file;
+    const std::uint32_t point = context.point;
     const ObservableSeries series(file, point, request.observable);
     Table table;
     try {
       require_taps(file, point, series.n_realizations());
-      table = make_table(series, request.settings, around);
+      table = make_table(series, request.settings, context);
     } catch (const BadInput& refusal) {
       table.notes = {{"refused", refusal.what()}};
     }
@@ -127,12 +127,12 @@ std::vector<Table> analyse(const ResultsFile& file, std::span<const std::uint32_
   };
   for (const auto& request : analyses.ordering) require_equilibrium(file, points, request.settings);
   for (const std::uint32_t point : points) {
-    const Surroundings around{file, point, threads, scenes};
-    add_tables(around, "steady", analyses.steady, tables);
-    add_tables(around, "spectrum", analyses.spectrum, tables);
-    add_tables(around, "ageing", analyses.ageing, tables);
-    add_tables(around, "hysteresis", analyses.hysteresis, tables);
-    add_tables(around, "ordering", analyses.ordering, tables);
+    const AnalysisContext context{file, point, threads, scenes};
+    add_tables(context, "steady", analyses.steady, tables);
+    add_tables(context, "spectrum", analyses.spectrum, tables);
+    add_tables(context, "ageing", analyses.ageing, tables);
+    add_tables(context, "hysteresis", analyses.hysteresis, tables);
+    add_tables(context, "ordering", analyses.ordering, tables);
   }
   if (points.size() > 1 && !analyses.ordering.empty()) {
     const Scene& scene = scenes().scene();

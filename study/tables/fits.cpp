@@ -20,12 +20,12 @@ namespace jostle::inline study {
 namespace {
 
 /// In the parameters of the law, whichever law was fitted.
-ResampledErrors resampled_errors(const Model& model, const RealizationCurves& behind,
+ResampledErrors resampled_errors(const Model& model, const RealizationCurves& curves,
                                  const Fit& fit, const ResamplingOptions& options) {
-  if (!fit.limit) return resample(model, behind, fit, options);
+  if (!fit.limit) return resample(model, curves, fit, options);
   Fit at_limit = fit;
   at_limit.estimates = fit.limit->estimates;
-  const ResampledErrors found = resample(*fit.limit->law, behind, at_limit, options);
+  const ResampledErrors found = resample(*fit.limit->law, curves, at_limit, options);
   ResampledErrors errors;
   errors.resamples = found.resamples;
   errors.failed = found.failed;
@@ -49,12 +49,12 @@ constexpr double noticed_difference = 1.25;  // ratio of two errors of one param
 void remark_on_resampled(const ResampledErrors& resampled, Fit& fit) {
   std::vector<std::string> names;
   for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
-    const double error = fit.estimates[j].error, other = resampled.errors[j];
-    if (!fit.estimates[j].has_value() || !(error > 0 && other > 0)) continue;
-    if (!std::isfinite(error) || !std::isfinite(other)) continue;
-    if (std::max(error / other, other / error) <= noticed_difference) continue;
+    const double error = fit.estimates[j].error, resampled_error = resampled.errors[j];
+    if (!fit.estimates[j].has_value() || !(error > 0 && resampled_error > 0)) continue;
+    if (!std::isfinite(error) || !std::isfinite(resampled_error)) continue;
+    if (std::max(error / resampled_error, resampled_error / error) <= noticed_difference) continue;
     names.push_back(fmt::format("{} ({}, profile {})", fit.estimates[j].parameter.name,
-                                number_text(half_width(other, fit.error_dof), 2),
+                                number_text(half_width(resampled_error, fit.error_dof), 2),
                                 number_text(half_width(error, fit.error_dof), 2)));
   }
   if (names.empty()) return;
@@ -73,9 +73,9 @@ FitOutcome fit_model(const Model& model, const Curve& curve, const FitManner& ma
   if (!found || curve.n_realizations < 2 || !manner.resampled) return outcome;
   const bool logarithmic = model.residual_scale() == ResidualScale::logarithmic;
   const Curve weighted = curve.present.empty() ? curve : with_pooled_errors(curve, logarithmic);
-  const RealizationCurves behind{curve.t, weighted.sigma, curve.values,
+  const RealizationCurves curves{curve.t, weighted.sigma, curve.values,
                                  static_cast<std::uint32_t>(curve.n_realizations)};
-  outcome.resampled = resampled_errors(model, behind, *found, manner.resampling);
+  outcome.resampled = resampled_errors(model, curves, *found, manner.resampling);
   remark_on_resampled(*outcome.resampled, std::get<Fit>(outcome.result));
   return outcome;
 }
@@ -119,19 +119,19 @@ struct EstimateColumns {
 /// Along `axis`; `prefix` is that of their names.
 void add_estimates(Table& table, const EstimateColumns& columns, const std::string& axis,
                    const std::string& prefix) {
-  const std::vector<std::string> one = {axis}, ends = {axis, "level"};
+  const std::vector<std::string> axes = {axis}, ends = {axis, "level"};
   const std::vector<Quantity> added = {
-      values(prefix + "value", one, columns.value,
+      values(prefix + "value", axes, columns.value,
              "least squares; not a number where the data set no limits"),
-      values(prefix + "error", one, columns.error,
+      values(prefix + "error", axes, columns.error,
              "standard error that counts realizations or memory: half the 68 % interval over "
              "Student's t of error_dof"),
-      values(prefix + "standard_error", one, columns.linear,
+      values(prefix + "standard_error", axes, columns.linear,
              "of a linear problem with independent points"),
-      {prefix + "units", one, columns.units, "", "units of the parameter", ""},
-      {prefix + "statement", one, columns.statements, "", "how well the data limit the parameter",
+      {prefix + "units", axes, columns.units, "", "units of the parameter", ""},
+      {prefix + "statement", axes, columns.statements, "", "how well the data limit the parameter",
        ""},
-      {prefix + "identifiability", one, columns.found, "", "the statement in a word", ""},
+      {prefix + "identifiability", axes, columns.found, "", "the statement in a word", ""},
       values(prefix + "interval_lower", ends, columns.lower,
              "lower end of the profile-likelihood interval"),
       values(prefix + "interval_upper", ends, columns.upper,
@@ -153,8 +153,8 @@ void add_parameters(Table& table, const FitOutcome& outcome, const Fit& fit) {
       correlation.push_back(fit.correlation(row, column));
     }
   }
-  const std::vector<std::string> one = {"parameter"}, matrix = {"parameter", "other_parameter"};
-  table.axes = {{"parameter", one, columns.names, "", "parameters of the law", ""},
+  const std::vector<std::string> axes = {"parameter"}, matrix = {"parameter", "other_parameter"};
+  table.axes = {{"parameter", axes, columns.names, "", "parameters of the law", ""},
                 {"other_parameter", {"other_parameter"}, columns.names, "", "the same", ""},
                 values("level", {"level"}, {interval_levels[0], interval_levels[1]},
                        "probability of an interval")};
@@ -163,16 +163,16 @@ void add_parameters(Table& table, const FitOutcome& outcome, const Fit& fit) {
   table.quantities.push_back(values("correlation", matrix, correlation, "correlation"));
   if (!resampled.empty()) {
     table.quantities.push_back(
-        values("resampled_error", one, resampled, "error from resampled realizations"));
+        values("resampled_error", axes, resampled, "error from resampled realizations"));
   }
 }
 
 /// Estimates of another law of the same curve, along an axis of their own.
 void add_other_law(Table& table, const std::vector<Estimate>& estimates, const std::string& prefix,
-                   const std::string& what) {
+                   const std::string& meaning) {
   const EstimateColumns columns(estimates);
   const std::string axis = prefix + "parameter";
-  table.axes.push_back({axis, {axis}, columns.names, "", what, ""});
+  table.axes.push_back({axis, {axis}, columns.names, "", meaning, ""});
   add_estimates(table, columns, axis, prefix);
 }
 
@@ -193,18 +193,18 @@ void add_limit(Table& table, const LimitingFit& limit) {
 
 void add_curve(Table& table, const Curve& source, const Fit& fit) {
   const Curve curve = with_pooled_errors(source, fit.logarithmic);
-  const std::vector<std::string> along = {"t"};
-  table.axes.push_back(values("t", along, curve.t, "taps"));
-  table.quantities.push_back(values("x", along, curve.x, "mean over realizations"));
+  const std::vector<std::string> axes = {"t"};
+  table.axes.push_back(values("t", axes, curve.t, "taps"));
+  table.quantities.push_back(values("x", axes, curve.x, "mean over realizations"));
   if (!curve.sigma.empty()) {
     table.quantities.push_back(
-        values("x_error", along, curve.sigma, "standard error of the mean, pooled over taps"));
+        values("x_error", axes, curve.sigma, "standard error of the mean, pooled over taps"));
     const double dof =
         curve.n_realizations > 1 ? static_cast<double>(curve.n_realizations - 1) : infinite;
     table.quantities.push_back(
         values("x_dof", {}, {dof}, "degrees of freedom of x_error; infinite for given errors"));
   }
-  table.quantities.push_back(values("fitted", along, fit.fitted, "the law"));
+  table.quantities.push_back(values("fitted", axes, fit.fitted, "the law"));
 }
 
 void add_statistics(Table& table, const Fit& fit) {

@@ -18,12 +18,12 @@ namespace {
 struct Switch {
   std::uint32_t point = 0;
   Stage last{};
-  Control before{};
+  Control earlier{};
   std::uint64_t tap = 0;  // the last before it
 };
 
 Switch switch_of(const PointScenes& scenes, std::uint32_t point) {
-  const std::vector<Stage> protocol = stages(scenes.at(point).protocol);
+  const std::vector<Stage> protocol = stages(scenes.point_scene(point).protocol);
   if (protocol.size() < 2)
     throw BadInput(
         "needs protocols of at least two stages: ways of reaching a packing fraction, "
@@ -68,16 +68,16 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
   std::vector<std::uint32_t> realizations;
   std::vector<std::string> left_out;
   for (const std::uint32_t point : points) {
-    const Switch here = switch_of(scenes, point);
-    if (!switches.empty() && !(here.last.tap == switches.front().last.tap))
+    const Switch current = switch_of(scenes, point);
+    if (!switches.empty() && !(current.last.tap == switches.front().last.tap))
       throw BadInput(
           "the last stage must tap alike at all points: it is what histories are "
           "compared under");
-    if (!switches.empty() && here.before.name != switches.front().before.name)
+    if (!switches.empty() && current.earlier.name != switches.front().earlier.name)
       throw BadInput(fmt::format("the points tap in different ways before the switch ({}, {})",
-                                 switches.front().before.name, here.before.name));
+                                 switches.front().earlier.name, current.earlier.name));
     const ObservableSeries here_all(file, point, request.observable);
-    if (here_all.n_rows() <= here.tap + 1) {
+    if (here_all.n_rows() <= current.tap + 1) {
       left_out.push_back(fmt::format("{}: {}", file.study().points[point].label,
                                      here_all.n_rows() == 0
                                          ? "no realization has taps"
@@ -85,13 +85,13 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
       continue;
     }
     const ObservableSeries& all = series.emplace_back(here_all);
-    last = std::min({last, here.last.count, all.n_rows() - 1 - here.tap});
-    matched = matched && scenes.at(point).streams == Streams::matched;
+    last = std::min({last, current.last.count, all.n_rows() - 1 - current.tap});
+    matched = matched && scenes.point_scene(point).streams == Streams::matched;
     if (switches.empty()) realizations = all.realizations();
     std::erase_if(realizations, [&](std::uint32_t r) {
       return !std::ranges::binary_search(all.realizations(), r);
     });
-    switches.push_back(here);
+    switches.push_back(current);
   }
   if (switches.size() < 2)
     throw BadInput("needs two sweep points at least; left out: " + joined(left_out, "; "));
@@ -99,20 +99,22 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
   std::vector<LagWindow> windows = windows_within(request.settings, last);
   std::vector<History> histories;
   for (std::size_t i = 0; i < switches.size(); ++i) {
-    const std::uint64_t at = switches[i].tap;
-    History history{switches[i].before.value,
-                    at,
-                    chosen(series[i], series[i].means({at, at + 1}), realizations),
+    const std::uint64_t switch_tap = switches[i].tap;
+    History history{switches[i].earlier.value,
+                    switch_tap,
+                    chosen(series[i], series[i].means({switch_tap, switch_tap + 1}), realizations),
                     {}};
     for (const LagWindow& window : windows) {
-      const std::vector<double> means = series[i].means({at + window.first, at + window.last + 1});
-      std::ranges::copy(chosen(series[i], means, realizations), std::back_inserter(history.after));
+      const std::vector<double> means =
+          series[i].means({switch_tap + window.first, switch_tap + window.last + 1});
+      std::ranges::copy(chosen(series[i], means, realizations),
+                        std::back_inserter(history.responses));
     }
     histories.push_back(std::move(history));
   }
-  const Control& before = switches.front().before;
-  Table table = memory_table("", series.front().label(), before.name, before.units, histories,
-                             memory_test(histories, std::move(windows)));
+  const Control& control_before = switches.front().earlier;
+  Table table = memory_table("", series.front().label(), control_before.name, control_before.units,
+                             histories, memory_test(histories, std::move(windows)));
   if (!left_out.empty()) table.notes.emplace_back("left_out", joined(left_out, "; "));
   table.notes.emplace_back("streams", matched ? "matched" : "independent");
   return table;

@@ -36,15 +36,15 @@ Column label_named(const ResultsFile& file, std::uint32_t point, const std::stri
   if (found != labels.end()) return *found;
   std::vector<std::string> names;
   for (const Column& label : labels) names.push_back(label.name);
-  const std::string others = points_with(file, observable);
-  if (others.empty()) {
+  const std::string other_points = points_with(file, observable);
+  if (other_points.empty()) {
     throw BadArgument(Argument::observable, observable,
                       fmt::format("there is none; {} has {}.{}", file.path(), joined(names, ", "),
                                   did_you_mean(observable, names)));
   }
   throw BadArgument(Argument::observable, observable,
                     fmt::format("there is none at sweep point {}, which has {}. It is at {}", point,
-                                joined(names, ", "), others),
+                                joined(names, ", "), other_points),
                     Argument::sweep_point);
 }
 
@@ -106,15 +106,15 @@ void ObservableSeries::for_each_of(const std::vector<std::uint32_t>& realization
 std::vector<double> ObservableSeries::means(const TapRange& taps) const {
   std::vector<double> means(used_.size(), std::numeric_limits<double>::quiet_NaN());
   if (taps.first >= taps.end) return means;
-  std::vector<std::uint32_t> there;
+  std::vector<std::uint32_t> available;
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < used_.size(); ++i) {
     if (reached_[i] < taps.end) continue;
-    there.push_back(used_[i]);
+    available.push_back(used_[i]);
     places.push_back(i);
   }
   auto place = places.begin();
-  for_each_of(there, taps, [&](std::span<const double> values) {
+  for_each_of(available, taps, [&](std::span<const double> values) {
     Moments moments;
     for (const double value : values) moments.add(value);
     means[*place++] = moments.mean();

@@ -166,16 +166,16 @@ std::vector<Table> tables_without_packings(const std::string& prefix,
 
 /// The taps of the file that are named; all if none is named.
 std::vector<std::uint64_t> chosen_taps(const std::string& name,
-                                       const std::vector<std::uint64_t>& there,
+                                       const std::vector<std::uint64_t>& available,
                                        std::span<const std::uint64_t> named) {
-  if (named.empty()) return there;
+  if (named.empty()) return available;
   std::vector<std::uint64_t> chosen(named.begin(), named.end());
   std::ranges::sort(chosen);
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   for (const std::uint64_t tap : chosen) {
-    if (!std::ranges::binary_search(there, tap)) {
+    if (!std::ranges::binary_search(available, tap)) {
       throw BadInput(
-          fmt::format("{}: no packing of tap {}; there are {}", name, tap, list_of(there)));
+          fmt::format("{}: no packing of tap {}; there are {}", name, tap, list_of(available)));
     }
   }
   return chosen;
@@ -299,8 +299,8 @@ std::vector<Table> structure_of(std::span<const std::string> files,
           "{}: its container is not that of {}: only packings of one container have a mean", path,
           files.front()));
     }
-    const auto twin = std::ranges::find_if(packings, [&](const std::vector<Packing>& other) {
-      return &other == &packings.back() || share_a_frame(other, packings.back());
+    const auto twin = std::ranges::find_if(packings, [&](const std::vector<Packing>& candidate) {
+      return &candidate == &packings.back() || share_a_frame(candidate, packings.back());
     });
     if (twin != packings.end() - 1) {
       throw BadInput(fmt::format("{}: the same packings as in {}, and not another realization",

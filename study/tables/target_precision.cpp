@@ -60,16 +60,16 @@ PrecisionStatus precision_status(const ResultsFile& file, const TargetPrecision&
       limits.push_back(target.at_most);
     }
   }
-  status.met = std::ranges::all_of(found, [](const SpreadFound& one) { return one.met(); });
+  status.met = std::ranges::all_of(found, [](const SpreadFound& spread) { return spread.met(); });
   status.next = next_realizations(status.realizations, found, until.at_most);
-  const std::vector<std::string> along = {"target"};
+  const std::vector<std::string> axes = {"target"};
   status.table = {.name = "target_precision",
-                  .axes = {{"target", along, rows, "1", "targets at sweep points", ""}},
-                  .quantities = {{"point", along, points, "1", "sweep point", ""},
-                                 {"observable", along, observables, "1", "observable", ""},
-                                 {"spread", along, spreads, "1", "what is to be small", ""},
-                                 {"value", along, values, "", "largest over the taps", ""},
-                                 {"at_most", along, limits, "", "what was asked for", ""}},
+                  .axes = {{"target", axes, rows, "1", "targets at sweep points", ""}},
+                  .quantities = {{"point", axes, points, "1", "sweep point", ""},
+                                 {"observable", axes, observables, "1", "observable", ""},
+                                 {"spread", axes, spreads, "1", "what is to be small", ""},
+                                 {"value", axes, values, "", "largest over the taps", ""},
+                                 {"at_most", axes, limits, "", "what was asked for", ""}},
                   .notes = {{"realizations", fmt::to_string(status.realizations)},
                             {"verdict", status.met ? "met" : "not met"}}};
   return status;

@@ -42,18 +42,20 @@ struct SpheresOf {
 
   double n() const { return static_cast<double>(scene.n_spheres); }
   double area() const { return footprint_area(scene.container); }
-  VolumeOf in(double height) const { return {area() * height * mean / sphere_volume}; }
+  VolumeOf volume_at(double height) const { return {area() * height * mean / sphere_volume}; }
 
   std::optional<VolumeOf> operator()(const MeanHeight&) const {
     return VolumeOf{n(), 2 * area() / sphere_volume};
   }
-  std::optional<VolumeOf> operator()(const BottomFraction&) const { return in(4 * sphere_radius); }
+  std::optional<VolumeOf> operator()(const BottomFraction&) const {
+    return volume_at(4 * sphere_radius);
+  }
   std::optional<VolumeOf> operator()(const CorrectedFraction& corrected) const {
     return VolumeOf{n() * corrected.depth};
   }
   std::optional<VolumeOf> operator()(const BulkFraction& bulk) const {
     if (const auto* heights = std::get_if<HeightWindow>(&bulk.window))
-      return in(heights->high - heights->low);
+      return volume_at(heights->high - heights->low);
     const auto& quantiles = std::get<QuantileWindow>(bulk.window);
     return VolumeOf{n() * (quantiles.high - quantiles.low)};
   }
@@ -65,9 +67,9 @@ struct SpheresOf {
 
 VolumeOf volume_of(const Scene& scene, const std::string& observable, double mean,
                    const VolumesSettings& settings) {
-  for (const Observable& one : scene.observables) {
-    if (label(one).name != observable) continue;
-    std::optional<VolumeOf> found = std::visit(SpheresOf{scene, mean}, one);
+  for (const Observable& candidate : scene.observables) {
+    if (label(candidate).name != observable) continue;
+    std::optional<VolumeOf> found = std::visit(SpheresOf{scene, mean}, candidate);
     if (!found) break;
     if (!settings.spheres) return *found;
     if (found->per_height) *found->per_height *= *settings.spheres / found->spheres;
@@ -132,7 +134,7 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
   const std::vector<std::uint32_t> realizations = common_realizations(file, sources, observable);
   const Source& first = sources.all.front();
   const ObservableSeries first_series(file, first.point, observable);
-  const VolumeOf volume = volume_of(scenes.at(first.point), observable,
+  const VolumeOf volume = volume_of(scenes.point_scene(first.point), observable,
                                     mean_over(first_series, first.taps), request.settings);
   std::vector<VolumeState> states;
   for (const Source& source : sources.all) {
@@ -171,7 +173,7 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
 /// The steps of the last branch of a protocol that goes through several strengths.
 std::optional<Sources> last_branch(const PointScenes& scenes, std::uint32_t point,
                                    const std::optional<std::uint64_t>& last) {
-  const std::vector<Stage> protocol = stages(scenes.at(point).protocol);
+  const std::vector<Stage> protocol = stages(scenes.point_scene(point).protocol);
   if (protocol.size() < 2) return std::nullopt;
   const std::uint64_t shortest = std::ranges::min(protocol, {}, &Stage::count).count;
   const auto found = protocol_steps(
@@ -219,7 +221,7 @@ void add_tables(const ResultsFile& file, const PointScenes& scenes,
     }
     const SweptPlace place =
         swept_place(file.study().points[point], scenes, point, settings.against);
-    Sources& group = groups[place.others];
+    Sources& group = groups[place.fixed_values];
     try {
       require_taps(file, point, series.n_realizations());
       const AnalysedSeries taps = last_taps(series, settings.last, 4, SteadyStateTest::fewest_taps);
@@ -231,11 +233,11 @@ void add_tables(const ResultsFile& file, const PointScenes& scenes,
           fmt::format("{}: {}", file.study().points[point].label, refusal.what()));
     }
   }
-  for (auto& [others, sources] : groups) {
+  for (auto& [fixed_values, sources] : groups) {
     std::ranges::stable_sort(sources.all, {}, &Source::strength);
     add_table(file, scenes, points, sources, request,
               groups.size() == 1 ? name : fmt::format("{}_{:04}", name, tables.size()), tables);
-    if (!others.empty()) tables.back().notes.emplace_back("at", others);
+    if (!fixed_values.empty()) tables.back().notes.emplace_back("at", fixed_values);
     if (!sources.left_out.empty())
       tables.back().notes.emplace_back("points_left_out", joined(sources.left_out, "; "));
   }

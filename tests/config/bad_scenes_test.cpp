@@ -27,8 +27,8 @@ TEST_CASE("Every expected list of faults belongs to a bad scene") {
 
 TEST_CASE("Nothing is read past a NUL byte") {
   const std::string text = text_of(good_scenes / "every_key.json");
-  for (const std::string& more : {std::string(1, '\0'), std::string("\0 no JSON", 9)}) {
-    const ParsedScene parsed = parse_scene(text + more);
+  for (const std::string& bytes : {std::string(1, '\0'), std::string("\0 no JSON", 9)}) {
+    const ParsedScene parsed = parse_scene(text + bytes);
     CHECK_FALSE(parsed.scene.has_value());
     REQUIRE(parsed.faults.size() == 1);
     CHECK(parsed.faults[0].message ==

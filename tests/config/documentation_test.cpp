@@ -57,8 +57,8 @@ std::set<std::string> words_of_code(const std::string& page) {
   std::set<std::string> words;
   for (std::sregex_iterator found(page.begin(), page.end(), code), end; found != end; ++found) {
     const std::string text = found->str();
-    for (std::sregex_iterator one(text.begin(), text.end(), word); one != end; ++one)
-      words.insert(one->str());
+    for (std::sregex_iterator match(text.begin(), text.end(), word); match != end; ++match)
+      words.insert(match->str());
   }
   return words;
 }

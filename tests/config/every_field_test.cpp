@@ -124,8 +124,8 @@ class FieldCases {
     for (const std::string& name : schema.value("required", std::vector<std::string>{})) add(name);
     if (schema.contains("oneOf")) {
       bool has_one = false;
-      for (const PlainJson& one : schema["oneOf"])
-        has_one = has_one || object.contains(one["required"][0].get<std::string>());
+      for (const PlainJson& alternative : schema["oneOf"])
+        has_one = has_one || object.contains(alternative["required"][0].get<std::string>());
       if (!has_one) add(schema["oneOf"][0]["required"][0]);
     }
     const PlainJson properties = schema.value("properties", PlainJson::object());
@@ -191,9 +191,9 @@ class FieldCases {
   void visit_object(const PlainJson& schema, const Place& place) {
     PlainJson unknown = good_object(schema, "", nullptr);
     for (const std::string& name : schema.value("required", std::vector<std::string>{})) {
-      PlainJson without = unknown;
-      without.erase(name);
-      visit_({place.pointer, place.put}, without, false);
+      PlainJson default_scene = unknown;
+      default_scene.erase(name);
+      visit_({place.pointer, place.put}, default_scene, false);
     }
     unknown["no_such_key"] = 1;
     visit_(place, unknown, false);
@@ -233,10 +233,10 @@ TEST_CASE("Reader and schema refuse what is out of range, of a wrong type, unkno
     }
     CHECK_FALSE(schema.accepts(scene));
     // A width of a list of two is judged with the other: the fault is that of the list.
-    const std::string above = place.pointer.substr(0, place.pointer.rfind('/'));
+    const std::string parent = place.pointer.substr(0, place.pointer.rfind('/'));
     CHECK(std::ranges::any_of(parsed.faults, [&](const Fault& fault) {
       return is_within(fault.pointer, place.pointer) ||
-             (above.ends_with("/width") && fault.pointer == above);
+             (parent.ends_with("/width") && fault.pointer == parent);
     }));
     ++n_refused;
   };
@@ -251,11 +251,12 @@ TEST_CASE("A key that is absent has the default of the schema") {
   std::size_t n_compared = 0;
   const auto compare = [&](const std::string& pointer, const PlainJson& written,
                            const PlainJson& absent) {
-    const ParsedScene with = parse_scene(written.dump()), without = parse_scene(absent.dump());
-    INFO(pointer << "\n" << lines(with.faults) << lines(without.faults));
-    CHECK(lines(with.faults) == lines(without.faults));
-    CHECK(with.scene == without.scene);
-    n_compared += with.scene.has_value();
+    const ParsedScene explicit_scene = parse_scene(written.dump()),
+                      default_scene = parse_scene(absent.dump());
+    INFO(pointer << "\n" << lines(explicit_scene.faults) << lines(default_scene.faults));
+    CHECK(lines(explicit_scene.faults) == lines(default_scene.faults));
+    CHECK(explicit_scene.scene == default_scene.scene);
+    n_compared += explicit_scene.scene.has_value();
   };
   FieldCases(
       PlainJson::parse(scene_schema()), [](const Place&, const PlainJson&, bool) {}, compare)();

@@ -14,9 +14,9 @@ TEST_CASE("Good scenes are read, and read again from their resolved form") {
     CHECK(lines(parsed.faults).empty());
     REQUIRE(parsed.scene.has_value());
     const std::string written = resolved(*parsed.scene).dump(2);
-    const Scene again = scene_of(written);
-    CHECK(again == *parsed.scene);
-    CHECK(resolved(again).dump(2) == written);
+    const Scene repeated = scene_of(written);
+    CHECK(repeated == *parsed.scene);
+    CHECK(resolved(repeated).dump(2) == written);
   }
 }
 

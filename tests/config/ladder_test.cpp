@@ -41,7 +41,7 @@ TEST_CASE("A ladder of a mean-height stop goes up and down from the scene's eta"
                                                  "theta_0 = 1.57", "half the footprint"});
   const MostComplete best = most_complete(settings);
   CHECK(settings[best.last].name == "eta = 1e-07");
-  CHECK(settings[best.before].name == "eta = 1e-06");
+  CHECK(settings[best.second_last].name == "eta = 1e-06");
   const Stop& complete = relax_of(settings[best.last]).stop;
   CHECK(std::get<MeanHeightStop>(complete.rule).eta == 1e-7);
   CHECK(complete.max_sweeps == 100 * scene.relax.stop.max_sweeps);
@@ -84,12 +84,12 @@ TEST_CASE("A bulk fraction is read through a narrower, a wider and a tapered win
   scene.observables = {MeanHeight{}, BulkFraction{}, BulkFraction{"low", HeightWindow{2, 6}}};
   std::vector<OtherWindow> windows = other_windows(scene);
   REQUIRE(windows.size() == 5);
-  CHECK(windows[0].of == "bulk_fraction");
+  CHECK(windows[0].name == "bulk_fraction");
   CHECK(windows[0].observable == BulkFraction{"bulk_fraction_narrow", QuantileWindow{0.35, 0.65}});
   CHECK(windows[1].observable == BulkFraction{"bulk_fraction_wide", QuantileWindow{0.1, 0.9}});
   CHECK(windows[2].observable ==
         BulkFraction{"bulk_fraction_tapered", QuantileWindow{0.2, 0.8}, 0.8165});
-  CHECK(windows[3].of == "low");
+  CHECK(windows[3].name == "low");
   CHECK(windows[3].observable == BulkFraction{"low_narrow", HeightWindow{3, 5}});
   CHECK(windows[4].observable == BulkFraction{"low_tapered", HeightWindow{2, 6}, 0.8165});
   // A name that the scene has already is left alone.

@@ -48,12 +48,12 @@ TEST_CASE("A resume takes the same scene, more taps, more realizations and anoth
 
 TEST_CASE("A resume follows the same motion, from further origins and over further lags") {
   const auto faults = [](const char* was, const char* is, std::uint64_t taps) {
-    EditedScene before = EditedScene::parse(run), after = before;
-    if (was != nullptr) before["motion"] = EditedScene::parse(was);
-    if (is != nullptr) after["motion"] = EditedScene::parse(is);
-    after["protocol"][1]["count"] = 10;
-    if (taps > 0) after["protocol"].push_back({{"tap", {{"lift", 0.3}}}, {"count", taps}});
-    return lines(faults_of_resume(before.dump(), after.dump()));
+    EditedScene scene_before = EditedScene::parse(run), scene_after = scene_before;
+    if (was != nullptr) scene_before["motion"] = EditedScene::parse(was);
+    if (is != nullptr) scene_after["motion"] = EditedScene::parse(is);
+    scene_after["protocol"][1]["count"] = 10;
+    if (taps > 0) scene_after["protocol"].push_back({{"tap", {{"lift", 0.3}}}, {"count", taps}});
+    return lines(faults_of_resume(scene_before.dump(), scene_after.dump()));
   };
   CHECK(faults("{}", "{}", 0).empty());
   CHECK(faults("{}", "{}", 3000).empty());
@@ -172,7 +172,7 @@ TEST_CASE("A resume takes nothing else that is swept, and tries the taps of all 
 }
 
 TEST_CASE("Scenes that differ in the values of their sweep join") {
-  const auto with = [](const char* sweep, const char* name = "run") {
+  const auto scene_with = [](const char* sweep, const char* name = "run") {
     EditedScene scene = EditedScene::parse(run);
     scene["sweep"] = EditedScene::parse(sweep);
     scene["name"] = name;
@@ -181,31 +181,33 @@ TEST_CASE("Scenes that differ in the values of their sweep join") {
   const auto join = [](const EditedScene& a, const EditedScene& b) {
     return join_sweeps(parse_scene(a.dump()), parse_scene(b.dump()));
   };
-  const auto low = with(R"({"/protocol/0/tap/dilate": [0.02, 0.01], "/spheres": [512, 500]})");
+  const auto low =
+      scene_with(R"({"/protocol/0/tap/dilate": [0.02, 0.01], "/spheres": [512, 500]})");
   const auto high =
-      with(R"({"/protocol/0/tap/dilate": [0.03, 0.02], "/spheres": [500, 400]})", "high");
+      scene_with(R"({"/protocol/0/tap/dilate": [0.03, 0.02], "/spheres": [500, 400]})", "high");
   const ParsedScene joined = join(low, high);
   REQUIRE(joined.scene);
   CHECK(resolved(*joined.scene) ==
-        resolved(scene_of(with(R"({"/protocol/0/tap/dilate": [0.02, 0.01, 0.03],
+        resolved(scene_of(scene_with(R"({"/protocol/0/tap/dilate": [0.02, 0.01, 0.03],
                                    "/spheres": [512, 500, 400]})")
                               .dump())));
   const ParsedScene rows =
-      join(with(R"({"zip": {"/spheres": [500, 400], "/container/width": [8, 7]}})"),
-           with(R"({"zip": {"/spheres": [500, 400], "/container/width": [8, 9]}})"));
+      join(scene_with(R"({"zip": {"/spheres": [500, 400], "/container/width": [8, 7]}})"),
+           scene_with(R"({"zip": {"/spheres": [500, 400], "/container/width": [8, 9]}})"));
   REQUIRE(rows.scene);
   CHECK(resolved(*rows.scene).at("sweep").dump() ==
         R"({"zip":[{"/spheres":[500,400,400],"/container/width":[8,7,9]}]})");
 
-  EditedScene other = high;
-  other["seed"] = 2;
-  other["relax"] = EditedScene::parse(R"({"polar": {"theta0": 1}})");
-  CHECK(lines(join(low, other).faults) ==
+  EditedScene changed = high;
+  changed["seed"] = 2;
+  changed["relax"] = EditedScene::parse(R"({"polar": {"theta0": 1}})");
+  CHECK(lines(join(low, changed).faults) ==
         ": differs in /seed, /relax: only the values of a sweep may\n");
   CHECK_THAT(
-      lines(join(low, with(R"({"/spheres": [500], "/protocol/0/tap/dilate": [0.1]})")).faults),
+      lines(
+          join(low, scene_with(R"({"/spheres": [500], "/protocol/0/tap/dilate": [0.1]})")).faults),
       Catch::Contains("/sweep: the same must be swept"));
-  CHECK_FALSE(join(with("{}"), with("{}")).scene);
+  CHECK_FALSE(join(scene_with("{}"), scene_with("{}")).scene);
   // Values that the sweep replaces may differ.
   EditedScene base = low;
   base["spheres"] = 300;

@@ -160,16 +160,16 @@ void for_each_mutant(const PlainJson& scene, const Visit& visit) {
         mutant[place] = replacement;
         visit(mutant);
       }
-      PlainJson without = scene;
+      PlainJson reduced = scene;
       const auto parent = place.parent_pointer();
-      if (without[parent].is_object()) {
-        without[parent].erase(place.back());
-        visit(without);
-        without[parent][place.back() + "x"] = value;
-        visit(without);
+      if (reduced[parent].is_object()) {
+        reduced[parent].erase(place.back());
+        visit(reduced);
+        reduced[parent][place.back() + "x"] = value;
+        visit(reduced);
       } else {
-        without[parent].push_back(without[parent][0]);
-        visit(without);
+        reduced[parent].push_back(reduced[parent][0]);
+        visit(reduced);
       }
     }
   }

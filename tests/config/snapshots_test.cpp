@@ -8,10 +8,10 @@ namespace jostle {
 
 namespace {
 
-std::string scene_with(const std::string& more) {
+std::string scene_with(const std::string& settings) {
   return R"({"seed": 1, "container": {"sides": "periodic", "width": 4}, "spheres": 10,
              "start": {"random_settle": {}}, "protocol": [], )" +
-         more + "}";
+         settings + "}";
 }
 const std::string grains = R"("engine": {"discrete_element": {}})";
 const std::string all_kept =
@@ -45,11 +45,11 @@ TEST_CASE("By default snapshots keep everything that the engine has at the end o
 
 namespace {
 
-std::string scene_of_taps(int count, const std::string& more) {
+std::string scene_of_taps(int count, const std::string& settings) {
   return R"({"seed": 1, "container": {"sides": "periodic", "width": 4}, "spheres": 10,
              "start": {"random_settle": {}}, "relax": {"polar": {}, "stop": {"sweeps": 3}},
              "observe": ["mean_height"], "protocol": [{"tap": {"dilate": 0.05}, "count": )" +
-         std::to_string(count) + "}], " + more + "}";
+         std::to_string(count) + "}], " + settings + "}";
 }
 
 std::vector<std::uint64_t> kept_taps(const std::string& text) {
@@ -121,8 +121,8 @@ TEST_CASE("Points of both engines keep by default what each has") {
 
 TEST_CASE(
     "Data that an engine does not have, or that need positions, cannot be kept without them") {
-  const auto faults = [](const std::string& more) {
-    return lines(parse_scene(scene_with(more)).faults);
+  const auto faults = [](const std::string& settings) {
+    return lines(parse_scene(scene_with(settings)).faults);
   };
   CHECK(faults(R"("snapshots": {"keep": ["positions", "forces"]})") ==
         "/snapshots/keep: \"forces\" requires discrete elements: Monte Carlo has no times and no "

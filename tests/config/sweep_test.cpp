@@ -61,10 +61,10 @@ TEST_CASE("Zipped lists vary together and are crossed with the rest") {
 }
 
 TEST_CASE("A single zipped group needs no list") {
-  const auto one = plans(R"({"zip": {"/spheres": [256, 512], "/container/width": [6, 8]}})");
+  const auto zipped = plans(R"({"zip": {"/spheres": [256, 512], "/container/width": [6, 8]}})");
   const auto listed = plans(R"({"zip": [{"/spheres": [256, 512], "/container/width": [6, 8]}]})");
-  REQUIRE(one.size() == 2);
-  CHECK(ids_by_label(one) == ids_by_label(listed));
+  REQUIRE(zipped.size() == 2);
+  CHECK(ids_by_label(zipped) == ids_by_label(listed));
 }
 
 TEST_CASE("Whole parts of a scene can be swept, and values that are defaults") {
@@ -121,19 +121,20 @@ TEST_CASE("An element of a list is named with its list") {
 
 TEST_CASE("A point's id is a function of its own values") {
   const auto few = ids_by_label(plans(R"({"/protocol/0/tap/dilate": [0.01, 0.05]})"));
-  const auto more = ids_by_label(plans(R"({"/protocol/0/tap/dilate": [0.005, 0.01, 0.02, 0.05]})"));
-  CHECK(few.at("dilate = 0.01") == more.at("dilate = 0.01"));
-  CHECK(few.at("dilate = 0.05") == more.at("dilate = 0.05"));
-  CHECK(more.size() == 4);
+  const auto extended =
+      ids_by_label(plans(R"({"/protocol/0/tap/dilate": [0.005, 0.01, 0.02, 0.05]})"));
+  CHECK(few.at("dilate = 0.01") == extended.at("dilate = 0.01"));
+  CHECK(few.at("dilate = 0.05") == extended.at("dilate = 0.05"));
+  CHECK(extended.size() == 4);
   std::set<std::uint64_t> distinct;
-  for (const auto& [label, id] : more) distinct.insert(id);
+  for (const auto& [label, id] : extended) distinct.insert(id);
   CHECK(distinct.size() == 4);
 }
 
 TEST_CASE("A point's id depends neither on the order of axes nor on how values are written") {
-  const auto one = plans(R"({"/spheres": [256], "/protocol/0/tap/dilate": [0.05]})");
-  const auto other = plans(R"({"/protocol/0/tap/dilate": [5e-2], "/spheres": [256.0]})");
-  CHECK(one[0].point_id == other[0].point_id);
+  const auto single = plans(R"({"/spheres": [256], "/protocol/0/tap/dilate": [0.05]})");
+  const auto second = plans(R"({"/protocol/0/tap/dilate": [5e-2], "/spheres": [256.0]})");
+  CHECK(single[0].point_id == second[0].point_id);
 }
 
 // The hash is part of the identity of results: these numbers were computed by an independent
@@ -157,10 +158,10 @@ TEST_CASE("Axes keep their order through the resolved scene") {
   const Scene scene = scene_of(scene_with(
       R"({"zip": {"/spheres": [256, 512], "/container/width": [6, 8]},
           "/protocol/0/tap/dilate": [0.01, 0.05]})"));
-  const auto before = make_plans(scene, {});
-  const auto after = make_plans(scene_of(resolved(scene).dump()), {});
-  REQUIRE(before.size() == 4);
-  for (std::size_t i = 0; i < 4; ++i) CHECK(before[i].label == after[i].label);
+  const auto plans_before = make_plans(scene, {});
+  const auto plans_after = make_plans(scene_of(resolved(scene).dump()), {});
+  REQUIRE(plans_before.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(plans_before[i].label == plans_after[i].label);
   CHECK(n_sweep_points(scene) == 4);
 }
 

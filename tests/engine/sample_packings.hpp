@@ -30,8 +30,8 @@ inline Packing random_packing(const Container& container, std::uint32_t n, doubl
     const bool free = std::visit(
         [&](const auto& box) {
           if (!clear_of_boundaries(box, r)) return false;
-          for (const Vec3& other : packing.centres) {
-            if (overlaps(box, r, other)) return false;
+          for (const Vec3& neighbour : packing.centres) {
+            if (overlaps(box, r, neighbour)) return false;
           }
           return true;
         },

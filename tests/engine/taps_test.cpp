@@ -45,8 +45,8 @@ TEST_CASE("no tap creates an overlap beyond rounding") {
     const Packing packing = random_packing(container, 60, 8, 4);
     for (const Tap& tap : {Tap{Dilate{0.1}}, Tap{DilateFloorHeld{0.1}}, Tap{Lift{0.3}},
                            Tap{Shake{0.05, 0.3, 5}}, Tap{Dilate{0}}, Tap{Dilate{1e-16}}}) {
-      const Packing after = excited(packing, tap);
-      CHECK(deepest_overlap_brute_force(after).depth <= overlap_bound(after));
+      const Packing packing_after = excited(packing, tap);
+      CHECK(deepest_overlap_brute_force(packing_after).depth <= overlap_bound(packing_after));
     }
   }
 }
@@ -58,9 +58,9 @@ TEST_CASE("no tap of a mixture creates an overlap beyond rounding") {
       const Packing packing = random_mixture(container, graded_diameters(60, 0.3, ratio), 6, 4);
       for (const Tap& tap : {Tap{Dilate{0.1}}, Tap{DilateFloorHeld{0.1}}, Tap{Lift{0.3}},
                              Tap{Shake{0.05, 0.3, 5}}, Tap{Dilate{1e-16}}}) {
-        const Packing after = excited(packing, tap);
-        CHECK(deepest_overlap_brute_force(after).depth <= overlap_bound(after));
-        CHECK(after.sizes == packing.sizes);
+        const Packing packing_after = excited(packing, tap);
+        CHECK(deepest_overlap_brute_force(packing_after).depth <= overlap_bound(packing_after));
+        CHECK(packing_after.sizes == packing.sizes);
       }
     }
   }
@@ -72,10 +72,10 @@ TEST_CASE("a dilation about the floor holds the smallest radius for all spheres 
   Packing pair{PeriodicBox{9, 9}, {{2, 2, 1}, {2 + std::sqrt(1.0), 2, 0.25}}};
   pair.sizes = std::make_shared<const Sizes>(std::vector<double>{2, 0.5});
   REQUIRE(deepest_overlap_brute_force(pair).depth == 0);
-  const Packing after = excited(pair, DilateFloorHeld{0.1});
-  CHECK(after.centres[1].z == 0.25);
-  CHECK(after.centres[0].z == Approx(1 + 0.75 * 0.1));
-  CHECK(deepest_overlap_brute_force(after).depth == 0);
+  const Packing packing_after = excited(pair, DilateFloorHeld{0.1});
+  CHECK(packing_after.centres[1].z == 0.25);
+  CHECK(packing_after.centres[0].z == Approx(1 + 0.75 * 0.1));
+  CHECK(deepest_overlap_brute_force(packing_after).depth == 0);
   // A large sphere on top of a small one: held about its own radius it would rise by less than
   // what carries it, and overlap it.
   Packing tower{PeriodicBox{9, 9}, {{2, 2, 0.25}, {2, 2, 1.5}, {2, 2, 2.75}}};
@@ -100,8 +100,8 @@ TEST_CASE("taps of a touching bed leave overlaps of rounding only") {
     for (const Tap& tap : {Tap{Dilate{0}}, Tap{Dilate{1e-16}}, Tap{Dilate{1e-8}}, Tap{Dilate{10}},
                            Tap{DilateFloorHeld{0.025}}, Tap{Lift{1e-12}}, Tap{Lift{0.3}},
                            Tap{Lift{100}}, Tap{Shake{0.02, 0.1, 3}}}) {
-      const Packing after = excited(packing, tap);
-      CHECK(deepest_overlap_brute_force(after).depth <= overlap_bound(after));
+      const Packing packing_after = excited(packing, tap);
+      CHECK(deepest_overlap_brute_force(packing_after).depth <= overlap_bound(packing_after));
     }
   }
 }
@@ -109,13 +109,13 @@ TEST_CASE("taps of a touching bed leave overlaps of rounding only") {
 TEST_CASE("a shake offsets spheres inside its disc and counts those it could not") {
   RandomStream random(stream_key(10, 0, 0, Purpose::tap));
   Packing packing = random_packing(PeriodicBox{6, 6}, 40, 6, 5);
-  const Packing before = packing;
+  const Packing packing_before = packing;
   const TapReport report = excite(packing, Shake{0.1, 0.2, 3}, random);
   std::uint64_t unmoved = 0;
   for (std::size_t i = 0; i < packing.centres.size(); ++i) {
-    const Vec3 moved = separation(PeriodicBox{6, 6}, packing.centres[i], before.centres[i]);
+    const Vec3 moved = separation(PeriodicBox{6, 6}, packing.centres[i], packing_before.centres[i]);
     CHECK(moved.x * moved.x + moved.y * moved.y <= 0.2 * 0.2 * (1 + 1e-12));
-    CHECK(packing.centres[i].z == before.centres[i].z * 1.1);
+    CHECK(packing.centres[i].z == packing_before.centres[i].z * 1.1);
     unmoved += moved.x == 0 && moved.y == 0;
   }
   CHECK(report.lateral_offsets_dropped == unmoved);
@@ -158,11 +158,11 @@ TEST_CASE("a shake drops as many offsets at any height, in whatever order sphere
     for (const bool from_below : {true, false}) {
       Packing shaken = packing;
       if (!from_below) std::ranges::reverse(shaken.centres);
-      const Packing before = shaken;
+      const Packing packing_before = shaken;
       RandomStream tap(stream_key(5, 0, bed, Purpose::tap));
       excite(shaken, Shake{0.02, 0.1, 3}, tap);
       for (std::size_t i = 0; i < n; ++i) {
-        const bool dropped = shaken.centres[i].x == before.centres[i].x;
+        const bool dropped = shaken.centres[i].x == packing_before.centres[i].x;
         const std::size_t quarter = (from_below ? i : n - 1 - i) * quarters / n;
         differences.at(quarter).at(bed) += (from_below ? 1.0 : -1.0) * (dropped ? 1 : 0);
       }

@@ -38,11 +38,11 @@ class Bits {
     add(snapshot.velocities);
     add(snapshot.spins);
     add(std::uint64_t{snapshot.contacts.size()});
-    for (const Contact& one : snapshot.contacts) {
-      add(std::uint64_t{one.first});
-      add(std::uint64_t{one.second});
-      add(std::vector<double>{one.overlap, one.normal_force});
-      add(std::vector<Vec3>{one.normal, one.tangential_force});
+    for (const Contact& contact : snapshot.contacts) {
+      add(std::uint64_t{contact.first});
+      add(std::uint64_t{contact.second});
+      add(std::vector<double>{contact.overlap, contact.normal_force});
+      add(std::vector<Vec3>{contact.normal, contact.tangential_force});
     }
     add(snapshot.temperature_lateral);
     add(snapshot.temperature_vertical);
@@ -50,7 +50,7 @@ class Bits {
     add(snapshot.driven_lateral);
     add(snapshot.driven_vertical);
     if (!snapshot.forces) return;
-    for (const double one : snapshot.forces->moment) add(one);
+    for (const double value : snapshot.forces->moment) add(value);
     for (const WallForce& wall : snapshot.forces->walls) {
       add(wall.normal);
       add(std::vector<Vec3>{wall.friction});

@@ -68,14 +68,14 @@ TEST_CASE("A state of another engine is refused, and what is stored of the reali
   toy.observables = plan.observables;
   CHECK_THROWS_AS(Realization(toy, 0, sinking(toy, 0), monte_carlo.state()), StateError);
 
-  Realization other(toy, 0, sinking(toy, 0));
-  other.advance(3);
+  Realization second(toy, 0, sinking(toy, 0));
+  second.advance(3);
   CHECK_THROWS_WITH(
-      Realization(plan, 0, other.state()),
+      Realization(plan, 0, second.state()),
       Catch::Contains("another engine") && Catch::Contains("resume with the version"));
 
   MemorySink sink;
-  sink.checkpoint(first, other.state());
+  sink.checkpoint(first, second.state());
   Progress progress;
   CHECK_THROWS_AS(run_ensemble(std::span(&plan, 1), {first}, {}, sink, progress), StateError);
   const RecordedRealization& record = sink.records().at(first);

@@ -51,8 +51,9 @@ TEST_CASE("The report of a fitting lists moves and the fractions before and afte
         Approx(6 * sphere_volume / (13 * 13 * 6)));
 
   // A layer: no height between 4 R and 0.8 x 2<Z>.
-  const Packing layer{PeriodicBox{8, 8}, {{4, 4, 0.5}}}, same{WalledBox{8, 8}, layer.centres};
-  const FittingReport idle = fitting_report(layer, same);
+  const Packing layer{PeriodicBox{8, 8}, {{4, 4, 0.5}}},
+      walled_layer{WalledBox{8, 8}, layer.centres};
+  const FittingReport idle = fitting_report(layer, walled_layer);
   CHECK(idle.spheres_moved == 0);
   CHECK(idle.mean_rise == 0);
   CHECK(std::isnan(idle.central_fraction_before));

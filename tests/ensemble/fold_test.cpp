@@ -46,7 +46,7 @@ TEST_CASE("A sink of one's own folds its ensemble in the order of realizations")
   const Plan plan = small_plan();
   const SeriesBlock block = block_of(plan, 1), by_threads = block_of(plan, 3);
   for (std::size_t c = 0; c < block.n_columns(); ++c) {
-    const FoldedColumn folded = block.folded(c), other = by_threads.folded(c);
+    const FoldedColumn folded = block.folded(c), second = by_threads.folded(c);
     REQUIRE(folded.mean.size() == total_taps(plan) + 1);
     for (std::size_t tap = 0; tap < folded.mean.size(); ++tap) {
       Moments moments;
@@ -58,7 +58,7 @@ TEST_CASE("A sink of one's own folds its ensemble in the order of realizations")
       CHECK(bits(folded.sigma[tap]) == bits(moments.sigma()));
       CHECK(bits(folded.error[tap]) == bits(moments.standard_error()));
       CHECK(folded.count[tap] == moments.count());
-      CHECK(bits(folded.mean[tap]) == bits(other.mean[tap]));
+      CHECK(bits(folded.mean[tap]) == bits(second.mean[tap]));
     }
   }
 }

@@ -51,43 +51,44 @@ TEST_CASE("Snapshots keep what moves and acts in a bed of grains") {
   const Plan plan = keeping_all(grains_plan());
   const RecordedRealization record = run(plan, 1'000'000);
   REQUIRE(record.snapshots.size() == 3);
-  for (const SnapshotRecord& one : record.snapshots) {
-    CAPTURE(one.tap);
-    const Packing packing{plan.container, one.centres};
-    CHECK(one.velocities.size() == plan.n_spheres);
-    CHECK(one.spins.size() == plan.n_spheres);
-    CHECK(one.contacts.size() > plan.n_spheres);
-    CHECK(one.forces == bed_forces(packing, one.contacts));
-    CHECK(one.forces->walls.size() == 5);
-    const GranularTemperature temperature = granular_temperature(packing, one.velocities, 0.1);
-    CHECK(one.temperature_lateral.size() == temperature.lateral.size());
+  for (const SnapshotRecord& snapshot : record.snapshots) {
+    CAPTURE(snapshot.tap);
+    const Packing packing{plan.container, snapshot.centres};
+    CHECK(snapshot.velocities.size() == plan.n_spheres);
+    CHECK(snapshot.spins.size() == plan.n_spheres);
+    CHECK(snapshot.contacts.size() > plan.n_spheres);
+    CHECK(snapshot.forces == bed_forces(packing, snapshot.contacts));
+    CHECK(snapshot.forces->walls.size() == 5);
+    const GranularTemperature temperature = granular_temperature(packing, snapshot.velocities, 0.1);
+    CHECK(snapshot.temperature_lateral.size() == temperature.lateral.size());
     // Tap 1 alone moves the floor: tap 0 is the start, tap 3 a lift.
-    CHECK(one.driven_fraction.empty() == (one.tap != 1));
-    CHECK(one.driven_lateral.size() == one.driven_vertical.size());
-    CHECK(one.driven_lateral.size() <= one.driven_fraction.size());
+    CHECK(snapshot.driven_fraction.empty() == (snapshot.tap != 1));
+    CHECK(snapshot.driven_lateral.size() == snapshot.driven_vertical.size());
+    CHECK(snapshot.driven_lateral.size() <= snapshot.driven_fraction.size());
     // The contacts are those of the stored positions, with those that have opened left out.
-    for (const Contact& contact : one.contacts) {
+    for (const Contact& contact : snapshot.contacts) {
       if (contact.second >= plan.n_spheres) continue;
-      const Vec3 between = one.centres[contact.first] - one.centres[contact.second];
-      CHECK(1 - std::sqrt(norm_squared(between)) == Approx(contact.overlap).margin(1e-14));
+      const Vec3 branch = snapshot.centres[contact.first] - snapshot.centres[contact.second];
+      CHECK(1 - std::sqrt(norm_squared(branch)) == Approx(contact.overlap).margin(1e-14));
     }
     // The bed is nearly at rest: 2 kinetic energies of 5e-5 m g d each, in s.
     double energy = 0;
-    for (const Vec3& velocity : one.velocities) energy += norm_squared(velocity) / plan.n_spheres;
+    for (const Vec3& velocity : snapshot.velocities)
+      energy += norm_squared(velocity) / plan.n_spheres;
     CHECK(energy < 2 * 5e-5 * 9.81 / 0.02);
   }
 }
 
 TEST_CASE("Rows do not depend on what snapshots keep, nor snapshots on interruptions") {
   const Plan plan = grains_plan(), keeping = keeping_all(plan);
-  const RecordedRealization without = run(plan, 1'000'000), with = run(keeping, 1'000'000);
-  CHECK(without.snapshots[0].velocities.empty());
-  CHECK_FALSE(without.snapshots[0].forces);
-  RecordedRealization same_kept = with;
-  for (SnapshotRecord& one : same_kept.snapshots)
-    one = {one.tap, one.centres, one.coordination, one.height_histogram};
-  CHECK(bits(same_kept) == bits(without));
-  CHECK(bits(run(keeping, 33'333, true)) == bits(with));
+  const RecordedRealization plain_run = run(plan, 1'000'000), keeping_run = run(keeping, 1'000'000);
+  CHECK(plain_run.snapshots[0].velocities.empty());
+  CHECK_FALSE(plain_run.snapshots[0].forces);
+  RecordedRealization same_kept = keeping_run;
+  for (SnapshotRecord& snapshot : same_kept.snapshots)
+    snapshot = {snapshot.tap, snapshot.centres, snapshot.coordination, snapshot.height_histogram};
+  CHECK(bits(same_kept) == bits(plain_run));
+  CHECK(bits(run(keeping, 33'333, true)) == bits(keeping_run));
 }
 
 TEST_CASE("Snapshots of Monte Carlo keep nothing that moves or acts") {

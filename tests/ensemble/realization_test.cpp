@@ -36,8 +36,8 @@ RecordedRealization interrupted(const Plan& plan, RandomStream& random) {
   RecordedRealization record;
   auto realization = std::make_unique<Realization>(plan, 0);
   while (!realization->finished()) {
-    keep(record, realization->advance(random.below(20 * plan.n_spheres)));
-    if (random.below(3) == 0) {
+    keep(record, realization->advance(random.integer_below(20 * plan.n_spheres)));
+    if (random.integer_below(3) == 0) {
       realization = std::make_unique<Realization>(plan, 0, realization->state());
     }
   }
@@ -145,9 +145,9 @@ TEST_CASE("A start can settle in a way of its own, and taps then begin as after 
   Plan slower = plan;
   slower.point_id = 5;
   monte_carlo(slower).relax.stop = {.rule = SweepsStop{.sweeps = 11}};
-  const RecordedRealization other = straight(slower);
-  CHECK(other.snapshots[0].centres == record.snapshots[0].centres);
-  CHECK(diagnostic(other.rows[1], "sweeps") == 11);
+  const RecordedRealization second = straight(slower);
+  CHECK(second.snapshots[0].centres == record.snapshots[0].centres);
+  CHECK(diagnostic(second.rows[1], "sweeps") == 11);
 
   // Equal taps from the bed at its end.
   Plan given = plan;
@@ -168,10 +168,10 @@ TEST_CASE(
       .stop = {.rule = SweepsStop{.sweeps = 300}}};
   Plan named = plan;
   monte_carlo(named).relax_start = monte_carlo(plan).relax;
-  const RecordedRealization one = straight(plan), other = straight(named);
-  REQUIRE(one.rows.size() == other.rows.size());
-  CHECK(engine_of(*one.state).move.step < 0.2);
-  CHECK(bits(one) == bits(other));
+  const RecordedRealization first = straight(plan), second = straight(named);
+  REQUIRE(first.rows.size() == second.rows.size());
+  CHECK(engine_of(*first.state).move.step < 0.2);
+  CHECK(bits(first) == bits(second));
 }
 
 TEST_CASE("While a start settles, quantiles are those of the bed to come, then those of the bed") {
@@ -259,10 +259,10 @@ TEST_CASE("Matched points begin from the same bed also where the start is relaxe
   plan.streams = Streams::matched;
   Plan other_point = plan;
   other_point.point_id = 77;
-  const RecordedRealization one = straight(plan), other = straight(other_point);
-  CHECK(diagnostic(one.rows[0], "sweeps") > 0);
-  CHECK(one.snapshots[0].centres == other.snapshots[0].centres);
-  CHECK(one.snapshots[1].centres != other.snapshots[1].centres);
+  const RecordedRealization first = straight(plan), second = straight(other_point);
+  CHECK(diagnostic(first.rows[0], "sweeps") > 0);
+  CHECK(first.snapshots[0].centres == second.snapshots[0].centres);
+  CHECK(first.snapshots[1].centres != second.snapshots[1].centres);
 }
 
 TEST_CASE("A shake records the share of lateral offsets that found no room") {

@@ -24,10 +24,10 @@ std::vector<Plan> unequal_plans() {
   return plans;
 }
 
-std::vector<RealizationId> realizations_of(std::size_t points, std::uint32_t each) {
+std::vector<RealizationId> realizations_of(std::size_t points, std::uint32_t n_realizations) {
   std::vector<RealizationId> ids;
   for (std::uint32_t point = 0; point < points; ++point) {
-    for (std::uint32_t index = 0; index < each; ++index) ids.push_back({point, index});
+    for (std::uint32_t index = 0; index < n_realizations; ++index) ids.push_back({point, index});
   }
   return ids;
 }
@@ -74,11 +74,11 @@ TEST_CASE("Work is called on as many threads as asked for") {
 TEST_CASE("Records do not depend on the number of threads") {
   const std::vector<Plan> plans = unequal_plans();
   const auto ids = realizations_of(2, 4);
-  const Ran one = undisturbed(plans, ids, 1);
-  CHECK(one.summary.done == 8);
-  REQUIRE(one.bits.size() == 8);
-  CHECK(undisturbed(plans, ids, 2).bits == one.bits);
-  CHECK(undisturbed(plans, ids, 3).bits == one.bits);
+  const Ran single = undisturbed(plans, ids, 1);
+  CHECK(single.summary.done == 8);
+  REQUIRE(single.bits.size() == 8);
+  CHECK(undisturbed(plans, ids, 2).bits == single.bits);
+  CHECK(undisturbed(plans, ids, 3).bits == single.bits);
 }
 
 TEST_CASE("A run stopped at any call and resumed records what an undisturbed one does") {
@@ -102,7 +102,7 @@ TEST_CASE("A run stopped at any call and resumed records what an undisturbed one
     unsigned runs = 0;
     for (; !to_do.empty(); ++runs) {
       stop = false;
-      calls_left = 5 + static_cast<std::int64_t>(random.below(repeat < 3 ? 400 : 80));
+      calls_left = 5 + static_cast<std::int64_t>(random.integer_below(repeat < 3 ? 400 : 80));
       Progress progress;
       run_ensemble(plans, to_do, options, sink, progress);
       std::erase_if(to_do, [&](RealizationId id) {

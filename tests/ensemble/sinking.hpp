@@ -78,13 +78,13 @@ class Sinking final : public Dynamics {
   }
 
   void step() {
-    double below = -sphere_radius, sunk = 0, gaps = 0;
+    double depth = -sphere_radius, sunk = 0, gaps = 0;
     for (Vec3& r : bed_.centres) {
-      const double gap = r.z - sunk - (below + 1);
+      const double gap = r.z - sunk - (depth + 1);
       const double left = gap * random_.uniform();
       r.z -= sunk += gap - left;
       gaps += left;
-      below = r.z;
+      depth = r.z;
       ++effort_.pair_tests;
     }
     ++steps_;

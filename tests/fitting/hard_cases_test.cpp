@@ -18,7 +18,7 @@ Curve sampled(const Model& model, const ParameterValues& p, const std::vector<do
               double noise_size = 0) {
   Noise noise(3);
   Curve curve{t, {}, {}};
-  for (double at : t) curve.x.push_back(model.value(at, p.data()) + noise_size * noise());
+  for (double time : t) curve.x.push_back(model.value(time, p.data()) + noise_size * noise());
   return curve;
 }
 
@@ -156,18 +156,18 @@ TEST_CASE("units do not matter: scaled by 1e-12 and 1e12 it is the same fit") {
       Curve scaled = curve;
       for (double& x : scaled.x) x *= x_scale;
       for (double& t : scaled.t) t *= t_scale;
-      const Fit same = fitted(model, scaled);
+      const Fit scaled_fit = fitted(model, scaled);
       const double scales[] = {x_scale, x_scale, 1, t_scale};
       for (std::size_t j = 0; j < 4; ++j) {
-        INFO(same.estimates[j].parameter.name << " scaled by " << x_scale << ", " << t_scale);
-        const Estimate& a = same.estimates[j];
+        INFO(scaled_fit.estimates[j].parameter.name << " scaled by " << x_scale << ", " << t_scale);
+        const Estimate& a = scaled_fit.estimates[j];
         const Estimate& b = unscaled.estimates[j];
         CHECK(a.value / scales[j] == Approx(b.value).epsilon(1e-7));
         CHECK(a.standard_error / scales[j] == Approx(b.standard_error).epsilon(1e-6));
         CHECK(a.intervals[1].upper / scales[j] == Approx(b.intervals[1].upper).epsilon(1e-4));
         CHECK(a.identifiability == b.identifiability);
       }
-      CHECK(same.r2 == Approx(unscaled.r2).epsilon(1e-9));
+      CHECK(scaled_fit.r2 == Approx(unscaled.r2).epsilon(1e-9));
     }
   }
 }

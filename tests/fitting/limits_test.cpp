@@ -132,15 +132,15 @@ TEST_CASE("Laws near their limits draw the curves of the limits") {
       for (const double distance : {1e2, 1e3, 1e4}) {
         const ParameterValues q = limit.near(p, distance, 1, 400);
         REQUIRE(q.size() == model->parameters().size());
-        double off = 0, range = 0;
+        double misfit = 0, range = 0;
         for (const double tap : t) {
           const double x = limit.law->value(tap, p.data());
-          off = std::max(off, std::abs(model->value(tap, q.data()) - x));
+          misfit = std::max(misfit, std::abs(model->value(tap, q.data()) - x));
           range = std::max(range, std::abs(x - limit.law->value(1, p.data())));
         }
-        CHECK(off <= 8 / distance * range);
-        CHECK(off < 0.2 * last);
-        last = off;
+        CHECK(misfit <= 8 / distance * range);
+        CHECK(misfit < 0.2 * last);
+        last = misfit;
         ++checked;
       }
     }
@@ -281,15 +281,15 @@ TEST_CASE("A fit stops after its limit of evaluations, and reports it") {
 TEST_CASE("Errors that weigh nothing or everything are refused with the reason") {
   Curve curve{.t = geometric(1, 400, 30), .x = {}};
   for (const double t : curve.t) curve.x.push_back(0.6 - 0.05 / (1 + std::log1p(t / 3)));
-  const auto refusal = [&](double one, double others) {
+  const auto refusal = [&](double first, double rest) {
     Curve weighted = curve;
-    weighted.sigma.assign(30, others);
-    weighted.sigma[4] = one;
+    weighted.sigma.assign(30, rest);
+    weighted.sigma[4] = first;
     const auto outcome = fit(InverseLog(), weighted);
     const auto* refused = std::get_if<Refusal>(&outcome);
     return refused ? refused->message : std::string();
   };
-  for (const auto& [one, others] : {std::pair{1e308, 1e308},
+  for (const auto& [first, rest] : {std::pair{1e308, 1e308},
                                     {1e308, 1e-3},
                                     {1e-3, 1e308},
                                     {1e-308, 1e-308},
@@ -299,8 +299,8 @@ TEST_CASE("Errors that weigh nothing or everything are refused with the reason")
                                     {1e-200, 1e-3},
                                     {1e40, 1e-3},
                                     {1e-60, 1e-3}}) {
-    CAPTURE(one, others);
-    const std::string message = refusal(one, others);
+    CAPTURE(first, rest);
+    const std::string message = refusal(first, rest);
     CHECK(message.find("sigma") != std::string::npos);
     CHECK(message.find("nan") == std::string::npos);
   }

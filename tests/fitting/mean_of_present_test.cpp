@@ -115,12 +115,12 @@ TEST_CASE("Pseudo-values are changes of the mean where a realization is left out
   const Curve all = mean_of_present(taps(n), values, m);
   std::vector<std::vector<double>> changes(n);
   for (std::size_t r = 0; r < m; ++r) {
-    std::vector<double> others;
+    std::vector<double> remaining;
     for (std::size_t k = 0; k < values.size(); ++k) {
-      if (k % m != r) others.push_back(values[k]);
+      if (k % m != r) remaining.push_back(values[k]);
     }
-    const Curve without = mean_of_present(taps(n), others, m - 1);
-    for (std::size_t i = 0; i < n; ++i) changes[i].push_back((m - 1.0) * (all.x[i] - without.x[i]));
+    const Curve reduced = mean_of_present(taps(n), remaining, m - 1);
+    for (std::size_t i = 0; i < n; ++i) changes[i].push_back((m - 1.0) * (all.x[i] - reduced.x[i]));
   }
   for (std::size_t i = 0; i < n; ++i) {
     double mean = 0;
@@ -139,7 +139,9 @@ TEST_CASE("Pseudo-values are finite where one realization alone links two others
   const Curve curve = mean_of_present(taps(60), values, 3);
   for (std::size_t i = 30; i < 60; ++i) values[i * 3 + 2] += 5;
   const Curve shifted = mean_of_present(taps(60), values, 3);
-  const auto offset = [](const Curve& one, std::size_t r) { return one.offsets[r]; };
+  const auto offset = [](const Curve& curve_of_means, std::size_t r) {
+    return curve_of_means.offsets[r];
+  };
   CHECK(offset(shifted, 2) - offset(shifted, 1) == Approx(offset(curve, 2) - offset(curve, 1) + 5));
   // The level moves by a third of the shift, and so does the share of the third realization.
   CHECK(shifted.x[5] - curve.x[5] == Approx(5 / 3.0));
@@ -155,14 +157,14 @@ TEST_CASE("Errors of means grow where realizations are missing") {
   const Curve curve = with_pooled_errors(mean_of_present(taps(100), values, 4));
   REQUIRE(curve.sigma.size() == 100);
   CHECK(curve.sigma[80] / curve.sigma[10] == Approx(std::sqrt(2.0)));
-  const Curve late = within(curve, 61, 100);
+  const Curve late = restricted(curve, 61, 100);
   CHECK(late.present.size() == 40 * 4);
   CHECK(late.offsets == curve.offsets);
 }
 
 TEST_CASE("Realizations without a common t are in groups of their own") {
-  const std::vector<double> apart = {1, 2, missing, missing, missing, missing, 3, 4};
-  const auto groups = linked_groups(apart, 4);
+  const std::vector<double> separated = {1, 2, missing, missing, missing, missing, 3, 4};
+  const auto groups = linked_groups(separated, 4);
   REQUIRE(groups.size() == 2);
   CHECK(groups[0] == std::vector<std::size_t>{0, 1});
   CHECK(groups[1] == std::vector<std::size_t>{2, 3});

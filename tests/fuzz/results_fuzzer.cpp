@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   constexpr int most_changes = 4;
   Choices choices({bytes, size});
   for (int i = 0; i < most_changes && choices.any_left(); ++i) {
-    const std::size_t kind = choices.below(n_forgeries);
+    const std::size_t kind = choices.integer_below(n_forgeries);
     forge(forged, kind, choices);
   }
   use_in_every_way(forged);

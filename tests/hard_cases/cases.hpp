@@ -29,7 +29,7 @@ inline bool finite(const std::vector<Vec3>& centres) {
 /// and none may be made: moves compare with the very arithmetic of the brute force.
 inline Packing run_trials(const Packing& start, const Move& move, std::uint64_t trials,
                           Sampler sampler = Sampler::exhaustive) {
-  Packing end = start, again = start;
+  Packing end = start, repeated = start;
   const auto loop =
       make_trial_loop(start.container, move, hard_case_key, best_instruction_set(), sampler);
   loop->load(start);
@@ -46,12 +46,12 @@ inline Packing run_trials(const Packing& start, const Move& move, std::uint64_t 
     cut->run(piece);
     done += piece;
   }
-  cut->store(again);
+  cut->store(repeated);
 
   CHECK(finite(end.centres));
   CHECK(deepest_overlap_brute_force(end).depth <=
         std::max(deepest_overlap_brute_force(start).depth, 1e-15));
-  CHECK(end.centres == again.centres);
+  CHECK(end.centres == repeated.centres);
   CHECK(loop->state() == cut->state());
   CHECK(loop->tally().trials == trials);
   // A sphere has at most twelve neighbours that touch, and some dozens within a long step.

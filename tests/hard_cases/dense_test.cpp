@@ -123,15 +123,15 @@ TEST_CASE("1e9 trials in a jammed bed make no overlap", "[nightly]") {
   for (const Move& move : {Move{PolarMove{}}, Move{MetropolisMove{}}}) {
     const auto loop = make_trial_loop(bed.container, move, hard_case_key);
     loop->load(bed);
-    double before = mean_height(bed);
+    double previous = mean_height(bed);
     for (int tenth = 0; tenth < 10; ++tenth) {
       loop->run(100'000'000);
       Packing now = bed;
       loop->store(now);
       REQUIRE(finite(now.centres));
       CHECK(deepest_overlap_brute_force(now).depth <= overlap_bound(now));
-      CHECK(mean_height(now) <= before);
-      before = mean_height(now);
+      CHECK(mean_height(now) <= previous);
+      previous = mean_height(now);
     }
   }
 }

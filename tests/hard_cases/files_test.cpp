@@ -123,7 +123,7 @@ TEST_CASE("foreign files under the name of results are refused with path and rea
   const std::string sound = text_of(path);
   RandomStream random = mutation_stream(4);
   std::string noise(3000, '\0');
-  for (char& byte : noise) byte = static_cast<char>(random.below(256));
+  for (char& byte : noise) byte = static_cast<char>(random.integer_below(256));
   const std::vector<std::string> foreign = {
       text_of(shipped_scenes / "quickstart.json"),
       noise,

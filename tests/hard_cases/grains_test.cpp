@@ -72,7 +72,7 @@ void check_sound(const Bed& bed, double ledger = 5e-3) {
 }  // namespace
 
 TEST_CASE("grains with every friction from none to ten come to rest and are tapped") {
-  double before = 1;
+  double previous = 1;
   for (const double friction : {0.0, 1.0, 10.0}) {
     CAPTURE(friction);
     DiscreteElement settings;
@@ -83,9 +83,9 @@ TEST_CASE("grains with every friction from none to ten come to rest and are tapp
     CHECK((bed["friction_energy"] > 0) == (friction > 0));
     bed.tap(HalfSine{0.4413, 7.5});
     check_sound(bed);
-    before = bed.mean_height();
+    previous = bed.mean_height();
   }
-  CHECK(before > 1);
+  CHECK(previous > 1);
 }
 
 TEST_CASE("grains of a stiffness over four decades") {
@@ -198,8 +198,8 @@ TEST_CASE("grains at rest for ten million steps stay where they are", "[nightly]
   const Bed bed(settings, column(box, n_spheres));
   CHECK(bed.mean_height() == Approx(settled.mean_height()).margin(1e-6));
   // It loses what still rings, and gains nothing.
-  const auto held = [](const Bed& one) {
-    return one.mean_height() + one["kinetic_energy"] + one["elastic_energy"];
+  const auto held = [](const Bed& sample) {
+    return sample.mean_height() + sample["kinetic_energy"] + sample["elastic_energy"];
   };
   CHECK(held(bed) <= held(settled));
   CHECK(held(settled) - held(bed) < 1e-4);

@@ -19,28 +19,30 @@ inline RandomStream mutation_stream(std::uint64_t seed) {
 /// One to four changes of bytes: a bit flipped, a piece lost, doubled or overwritten, the end lost.
 inline std::string mutated_bytes(std::string text, RandomStream& random) {
   const auto piece = [&](std::size_t most) {
-    return random.below(std::min(most, text.size()) + 1);
+    return random.integer_below(std::min(most, text.size()) + 1);
   };
-  for (std::uint64_t change = 0, n = 1 + random.below(4); change < n && !text.empty(); ++change) {
-    const std::uint64_t at = random.below(text.size());
-    switch (random.below(6)) {
+  for (std::uint64_t change = 0, n = 1 + random.integer_below(4); change < n && !text.empty();
+       ++change) {
+    const std::uint64_t index = random.integer_below(text.size());
+    switch (random.integer_below(6)) {
       case 0:
-        text[at] = static_cast<char>(text[at] ^ (1 << random.below(8)));
+        text[index] = static_cast<char>(text[index] ^ (1 << random.integer_below(8)));
         break;
       case 1:
-        text.erase(at, piece(40));
+        text.erase(index, piece(40));
         break;
       case 2:
-        text.insert(random.below(text.size()), text.substr(at, piece(40)));
+        text.insert(random.integer_below(text.size()), text.substr(index, piece(40)));
         break;
       case 3:
-        text.insert(at, 1, static_cast<char>(random.below(256)));
+        text.insert(index, 1, static_cast<char>(random.integer_below(256)));
         break;
       case 4:
-        text.replace(at, 1, 1 + piece(30), static_cast<char>(text[random.below(text.size())]));
+        text.replace(index, 1, 1 + piece(30),
+                     static_cast<char>(text[random.integer_below(text.size())]));
         break;
       default:
-        if (random.below(4) == 0) text.resize(at);
+        if (random.integer_below(4) == 0) text.resize(index);
     }
   }
   return text;
@@ -76,7 +78,7 @@ inline nlohmann::ordered_json surprising_value(RandomStream& random) {
                                       "{\"\": {}}",
                                       "{\"from\": 1, \"to\": 1e6, \"per_decade\": 10}",
                                       "{\"file\": \"a.h5\"}"};
-  return nlohmann::ordered_json::parse(texts[random.below(std::size(texts))]);
+  return nlohmann::ordered_json::parse(texts[random.integer_below(std::size(texts))]);
 }
 
 /// Every value within `value`, itself included.
@@ -91,34 +93,34 @@ inline void collect(nlohmann::ordered_json& value, std::vector<nlohmann::ordered
 inline nlohmann::ordered_json mutated_structure(nlohmann::ordered_json scene,
                                                 RandomStream& random) {
   static constexpr std::array factors = {-1.0, 0.0, 0.5, 2.0, 1e-3, 1e3, 1e12};
-  for (std::uint64_t change = 0, n = 1 + random.below(3); change < n; ++change) {
+  for (std::uint64_t change = 0, n = 1 + random.integer_below(3); change < n; ++change) {
     std::vector<nlohmann::ordered_json*> all;
     collect(scene, all);
-    nlohmann::ordered_json& value = *all[random.below(all.size())];
-    const nlohmann::ordered_json other = *all[random.below(all.size())];
-    switch (random.below(6)) {
+    nlohmann::ordered_json& value = *all[random.integer_below(all.size())];
+    const nlohmann::ordered_json donor = *all[random.integer_below(all.size())];
+    switch (random.integer_below(6)) {
       case 0:
         value = surprising_value(random);
         break;
       case 1:
-        value = other;
+        value = donor;
         break;
       case 2:
       case 3:
         if (value.is_number()) {
-          value = value.get<double>() * factors[random.below(factors.size())];
+          value = value.get<double>() * factors[random.integer_below(factors.size())];
         }
         break;
       case 4:
         if (value.is_structured() && !value.empty()) {
           auto place = value.begin();
-          std::advance(place, random.below(value.size()));
+          std::advance(place, random.integer_below(value.size()));
           value.erase(place);
         }
         break;
       default:
-        if (value.is_array()) value.push_back(other);
-        if (value.is_object()) value[random.below(2) ? "tap" : "no_such_key"] = other;
+        if (value.is_array()) value.push_back(donor);
+        if (value.is_object()) value[random.integer_below(2) ? "tap" : "no_such_key"] = donor;
     }
   }
   return scene;

@@ -16,9 +16,9 @@ bool holds(const std::string& text) {
   CHECK(parsed.scene.has_value() == parsed.faults.empty());
   for (const Fault& fault : parsed.faults) CHECK_FALSE(fault.message.empty());
   if (!parsed.scene) return false;
-  const ParsedScene again = parse_scene(resolved(*parsed.scene).dump());
-  REQUIRE(again.scene);
-  CHECK(*again.scene == *parsed.scene);
+  const ParsedScene repeated = parse_scene(resolved(*parsed.scene).dump());
+  REQUIRE(repeated.scene);
+  CHECK(*repeated.scene == *parsed.scene);
   CHECK(n_sweep_points(*parsed.scene) >= 1);
   return true;
 }

@@ -102,10 +102,10 @@ TEST_CASE("a column 100 000 diameters high is tapped without overlap", "[statist
       const auto loop = make_trial_loop(tube, move, hard_case_key);
       loop->load(column);
       loop->run(4'000'000);
-      const double before = mean_height(column);
+      const double previous = mean_height(column);
       loop->store(column);
       CHECK(finite(column.centres));
-      CHECK(mean_height(column) <= before);
+      CHECK(mean_height(column) <= previous);
       CHECK(deepest_pair_by_height(column) <= after_tap);
     }
   }
@@ -140,12 +140,12 @@ TEST_CASE("a million spheres are tapped, trial by trial without overlap", "[stat
   // The cells that found this are no witness of their own: some spheres against all others.
   const double bound = overlap_bound(ends[0]);
   for (int chosen = 0; chosen < 200; ++chosen) {
-    const std::uint64_t i = random.below(1'000'000);
+    const std::uint64_t i = random.integer_below(1'000'000);
     double nearest = 2;
     for (std::size_t j = 0; j < ends[0].centres.size(); ++j) {
       if (j == i) continue;
-      const Vec3 away = separation(box, ends[0].centres[i], ends[0].centres[j]);
-      nearest = std::min(nearest, norm_squared(away));
+      const Vec3 displacement = separation(box, ends[0].centres[i], ends[0].centres[j]);
+      nearest = std::min(nearest, norm_squared(displacement));
     }
     CHECK(std::sqrt(nearest) >= 1 - bound);
   }

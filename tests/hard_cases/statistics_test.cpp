@@ -56,7 +56,7 @@ TEST_CASE("a million taps of <Z> near 1e5 with fluctuations of 1e-6 keep their d
   const BlockingLevel& found = steady.blocking.levels[*plateau];
   CHECK(std::abs(found.error - sigma / 1e3) <= 3 * found.error_error);
   CHECK(std::abs(steady.autocorrelation.time - 0.5) <= 3 * steady.autocorrelation.error);
-  CHECK(std::abs(steady.trend.line.value) <= 3 * steady.trend.line.within.error);
+  CHECK(std::abs(steady.trend.line.value) <= 3 * steady.trend.line.series_error.error);
 
   // The spectrum of white noise of deviation sigma is 2 sigma^2 taps.
   const SpectrumOptions options{.segment = 1000, .overlap = 500};
@@ -82,12 +82,12 @@ TEST_CASE("series whose values are all equal have no spread, at any level") {
 
     SteadyStateTest test;
     test.add(series);
-    const SteadyState one = test.result();
-    CHECK(one.value == value);
-    CHECK(one.sigma == 0);
-    CHECK_FALSE(one.error.error > 0);
-    CHECK_FALSE(one.trend.drifts());
-    CHECK(std::isnan(one.realization_sigma));
+    const SteadyState state = test.result();
+    CHECK(state.value == value);
+    CHECK(state.sigma == 0);
+    CHECK_FALSE(state.error.error > 0);
+    CHECK_FALSE(state.trend.drifts());
+    CHECK(std::isnan(state.realization_sigma));
     test.add(series);
     CHECK(test.result().realization_sigma == 0);
 

@@ -25,10 +25,10 @@ double mean_of_taps(const std::vector<double>& series, std::size_t first, std::s
 }
 
 /// Means over these taps of each realization, of the second series less the first, paired.
-Moments difference(const Series& less, const Series& more, std::size_t first, std::size_t last) {
+Moments difference(const Series& less, const Series& denser, std::size_t first, std::size_t last) {
   Moments moments;
   for (std::size_t r = 0; r < less.size(); ++r) {
-    moments.add(mean_of_taps(more[r], first, last) - mean_of_taps(less[r], first, last));
+    moments.add(mean_of_taps(denser[r], first, last) - mean_of_taps(less[r], first, last));
   }
   return moments;
 }
@@ -62,15 +62,15 @@ TEST_CASE("Philippe & Bideau: beds densify and age, pores shrink, walls thin", "
                    {"snapshots", {{"taps", {0, 25}}, {"keep", {"positions"}}}}});
   const Plan walls = short_plan("philippe-bideau-2001/fig2.json", walled);
   const Plan sides = short_plan("philippe-bideau-2001/fig9.json", periodic);
-  const Records between_walls = run_records(walls, 6), without = run_records(sides, 8);
+  const Records between_walls = run_records(walls, 6), reduced = run_records(sides, 8);
   // Fig. 2: from tap 1, since the first tap also undoes the fit between the walls.
   check_positive(change(series_of(walls, between_walls, "bottom_fraction"), 1, 12));
-  check_positive(change(series_of(sides, without, "bottom_fraction"), 0, 25));
+  check_positive(change(series_of(sides, reduced, "bottom_fraction"), 0, 25));
   // Fig. 5 [7, of a narrower bed].
   check_positive(ageing(series_of(walls, between_walls, "mean_height"), 1, 8, 4));
   // Fig. 6: after 12 taps of one strength [20].
   const Series thin = series_of(walls, between_walls, "corrected_fraction");
-  const Series dense = series_of(sides, without, "corrected_fraction");
+  const Series dense = series_of(sides, reduced, "corrected_fraction");
   Moments thin_end, dense_end;
   for (const auto& phi : thin) thin_end.add(phi.at(12));
   for (const auto& phi : dense) dense_end.add(phi.at(12));
@@ -80,8 +80,8 @@ TEST_CASE("Philippe & Bideau: beds densify and age, pores shrink, walls thin", "
   // Fig. 9: P0 falls, by little, and is not Gotoh's: sigma = 1.4 [6; 12 beyond Gotoh's].
   constexpr std::size_t sigma_14 = 28;
   const StructureSettings voids{.void_probability = VoidSettings{}};
-  const Series p0 = structure_of(sides, without, voids, "p0", sigma_14);
-  const Series gotoh = structure_of(sides, without, voids, "p0_gotoh", sigma_14);
+  const Series p0 = structure_of(sides, reduced, voids, "p0", sigma_14);
+  const Series gotoh = structure_of(sides, reduced, voids, "p0_gotoh", sigma_14);
   Moments fall, beyond_gotoh;
   for (std::size_t r = 0; r < p0.size(); ++r) {
     fall.add(p0[r][0] - p0[r][1]);
@@ -91,7 +91,7 @@ TEST_CASE("Philippe & Bideau: beds densify and age, pores shrink, walls thin", "
   check_positive(beyond_gotoh);
   // Fig. 10: nu falls [4.4 with half the spheres].
   Moments shrinking;
-  for (const auto& nu : structure_of(sides, without, {.pores = PoresSettings{}}, "nu")) {
+  for (const auto& nu : structure_of(sides, reduced, {.pores = PoresSettings{}}, "nu")) {
     shrinking.add(nu[0] - nu[1]);
   }
   check_positive(shrinking);
@@ -134,13 +134,13 @@ TEST_CASE("Philippe & Bideau: the way down lies above the way up and falls with 
           {"count", 8}}}},
        {"relax", rough_relaxation},
        {"snapshots", nullptr}});
-  Moments above, falls;
+  Moments excess, falls;
   for (const auto& phi : run_series(plan, 4, "corrected_fraction")) {
     const auto stage = [&](std::size_t k) { return mean_of_taps(phi, 8 * k + 5, 8 * k + 8); };
-    above.add(stage(5) - stage(1));  // [14]
-    falls.add(stage(6) - stage(3));  // [7]
+    excess.add(stage(5) - stage(1));  // [14]
+    falls.add(stage(6) - stage(3));   // [7]
   }
-  check_positive(above);
+  check_positive(excess);
   check_positive(falls);
 }
 

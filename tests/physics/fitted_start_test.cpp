@@ -19,13 +19,13 @@ constexpr std::uint32_t n_spheres = 4096;
 constexpr std::uint64_t seed = 63051304;
 
 struct Fitted {
-  Packing before, after;
+  Packing poured, fitted;
 };
 
 Fitted fitted(std::uint64_t realization) {
   RandomStream random(stream_key(seed, 0, realization, Purpose::start));
   Fitted bed;
-  bed.after = make_start(FittedPour{}, walls, n_spheres, random, {}, &bed.before);
+  bed.fitted = make_start(FittedPour{}, walls, n_spheres, random, {}, &bed.poured);
   return bed;
 }
 
@@ -41,11 +41,11 @@ struct PoreVolumes {
 PoreVolumes pore_volumes(const Packing& packing, double from_walls) {
   const std::vector<Pore> chosen =
       pores_in(pores(packing, voronoi_cells(packing)), walls, {1, 10, from_walls});
-  constexpr double from = 0.15;
+  constexpr double tail_start = 0.15;
   Moments tail;
   for (const Pore& pore : chosen) {
     const double volume = std::pow(pore.radius / sphere_radius, 3);
-    if (volume > from) tail.add(volume - from);
+    if (volume > tail_start) tail.add(volume - tail_start);
   }
   return {mean_pore_volume(chosen), tail.mean()};
 }
@@ -70,19 +70,20 @@ TEST_CASE("Fitted between walls, a pour keeps its packing fraction and pores ins
   Moments fraction, mean, tail, change_of_mean, change_of_tail;
   for (std::uint64_t realization = 0; realization < 6; ++realization) {
     const Fitted bed = fitted(realization);
-    CHECK(deepest_overlap(bed.after).depth <= overlap_bound(bed.after));
+    CHECK(deepest_overlap(bed.fitted).depth <= overlap_bound(bed.fitted));
     // To the bit where no sphere moved nor came, which is everywhere but at the walls and on top.
-    CHECK(middle_fraction(bed.after) == middle_fraction(bed.before));
-    const PoreVolumes deep_before = pore_volumes(bed.before, 3), deep = pore_volumes(bed.after, 3);
+    CHECK(middle_fraction(bed.fitted) == middle_fraction(bed.poured));
+    const PoreVolumes deep_before = pore_volumes(bed.poured, 3), deep = pore_volumes(bed.fitted, 3);
     CHECK(deep.mean == Approx(deep_before.mean).epsilon(1e-9));
     CHECK(deep.tail == Approx(deep_before.tail).epsilon(1e-9));
     // In [PB]'s region, from 2 R off the walls on.
-    const PoreVolumes before = pore_volumes(bed.before, 1), after = pore_volumes(bed.after, 1);
-    fraction.add(middle_fraction(bed.after));
-    mean.add(after.mean);
-    tail.add(after.tail);
-    change_of_mean.add(after.mean - before.mean);
-    change_of_tail.add(after.tail - before.tail);
+    const PoreVolumes volumes_before = pore_volumes(bed.poured, 1),
+                      volumes_after = pore_volumes(bed.fitted, 1);
+    fraction.add(middle_fraction(bed.fitted));
+    mean.add(volumes_after.mean);
+    tail.add(volumes_after.tail);
+    change_of_mean.add(volumes_after.mean - volumes_before.mean);
+    change_of_tail.add(volumes_after.tail - volumes_before.tail);
   }
   // Periodic pours, by an independent program, and nu of a prototype's.
   check_mean(fraction, 0.5809, 0.0004);
@@ -102,7 +103,8 @@ TEST_CASE("Fitted between walls, a pour is thin at the walls", "[statistics]") {
   for (std::uint64_t realization = 0; realization < 6; ++realization) {
     const Fitted bed = fitted(realization);
     const std::vector<double> edges = even_edges(0, walls.width_x, 0.1);
-    const Profile profile = mean_transverse_profile(bed.after, edges, transverse_window(bed.after));
+    const Profile profile =
+        mean_transverse_profile(bed.fitted, edges, transverse_window(bed.fitted));
     for (std::size_t k = 0; k < slabs.size(); ++k) {
       const double near = profile.values.at(slabs[k]);
       const double far = profile.values.at(profile.size() - 1 - slabs[k]);
@@ -110,10 +112,10 @@ TEST_CASE("Fitted between walls, a pour is thin at the walls", "[statistics]") {
     }
     double count = 0;
     for (std::size_t i = 0; i < n_spheres; ++i) {
-      count += bed.after.centres[i] == bed.before.centres[i] ? 0 : 1;
+      count += bed.fitted.centres[i] == bed.poured.centres[i] ? 0 : 1;
     }
     moved.add(count);
-    corrected.add(corrected_fraction(bed.after));
+    corrected.add(corrected_fraction(bed.fitted));
   }
   // The prototype's figures come from one bed: its error is that of one bed here, and of rounding.
   const auto check = [](const Moments& run, double prototype_value, double rounding) {

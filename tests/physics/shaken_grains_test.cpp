@@ -40,11 +40,11 @@ TEST_CASE("Rosato & Dybenko: shaking hard enough to throw the bed densifies it, 
   };
   const Series gentle = gain(0.02, 10), strong = gain(0.06, 45);  // Gamma = 0.16 and 9.8
   // A bed gains some 0.01 or, where it orders, some 0.1: four beds determine the mean poorly.
-  Moments more;
+  Moments rises;
   for (std::size_t r = 0; r < gentle.size(); ++r)
-    more.add((strong[r][1] - strong[r][0]) - (gentle[r][1] - gentle[r][0]));
-  CAPTURE(more.mean(), more.standard_error(), change(gentle, 0, 1).mean());
-  CHECK(more.mean() > 3 * more.standard_error());
+    rises.add((strong[r][1] - strong[r][0]) - (gentle[r][1] - gentle[r][0]));
+  CAPTURE(rises.mean(), rises.standard_error(), change(gentle, 0, 1).mean());
+  CHECK(rises.mean() > 3 * rises.standard_error());
   CHECK(std::abs(change(gentle, 0, 1).mean()) < 0.005);
   for (std::size_t r = 0; r < gentle.size(); ++r) CHECK(gentle[r][0] == strong[r][0]);  // matched
 }
@@ -65,9 +65,9 @@ TEST_CASE("Rosato & Dybenko: poured grains lie looser with more friction", "[sta
          {"snapshots", nullptr}});
     return run_series(plan, 6, "bulk_fraction");
   };
-  const Series without = poured(0), with = poured(0.5);
+  const Series smooth = poured(0), rough = poured(0.5);
   Moments loss;
-  for (std::size_t r = 0; r < with.size(); ++r) loss.add(without[r][0] - with[r][0]);
+  for (std::size_t r = 0; r < rough.size(); ++r) loss.add(smooth[r][0] - rough[r][0]);
   CAPTURE(loss.mean(), loss.standard_error());
   CHECK(loss.mean() > 3 * loss.standard_error());  // [4]
 }
@@ -90,8 +90,8 @@ TEST_CASE("Tapped grains without friction end denser than Monte Carlo beds from 
       tapped({{"discrete_element",
                {{"contact", {{"walton_braun", {{"stiffness", 1e4}, {"friction", 0}}}}},
                 {"rest", {{"timed", {{"seconds", 0.5}}}}}}}});
-  Moments more;
-  for (std::size_t r = 0; r < grains.size(); ++r) more.add(grains[r][8] - trials[r][8]);
-  CAPTURE(more.mean(), more.standard_error());
-  CHECK(more.mean() > 3 * more.standard_error());  // [6]
+  Moments rises;
+  for (std::size_t r = 0; r < grains.size(); ++r) rises.add(grains[r][8] - trials[r][8]);
+  CAPTURE(rises.mean(), rises.standard_error());
+  CHECK(rises.mean() > 3 * rises.standard_error());  // [6]
 }

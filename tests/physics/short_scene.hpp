@@ -82,16 +82,16 @@ inline Series structure_of(const Plan& plan, const Records& records,
       }
       const auto parts =
           measure(packing, settings, stream_key(1, 0, id.realization, Purpose::void_points));
-      values.push_back(parts.at(0).find(name)->at(place));
+      values.push_back(parts.at(0).find(name)->value_at(place));
     }
   }
   return series;
 }
 
 /// Mean over realizations of the value at one tap less that at another, paired.
-inline Moments change(const Series& series, std::size_t from, std::size_t to) {
+inline Moments change(const Series& series, std::size_t first, std::size_t last) {
   Moments moments;
-  for (const auto& values : series) moments.add(values.at(to) - values.at(from));
+  for (const auto& values : series) moments.add(values.at(last) - values.at(first));
   return moments;
 }
 

@@ -17,11 +17,11 @@ using synthetic::run_to_end;
 
 namespace {
 
-void flip_bit(const std::string& path, std::uint64_t at) {
+void flip_bit(const std::string& path, std::uint64_t offset) {
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
-  file.seekg(static_cast<std::streamoff>(at));
+  file.seekg(static_cast<std::streamoff>(offset));
   const char byte = static_cast<char>(file.get() ^ 4);
-  file.seekp(static_cast<std::streamoff>(at));
+  file.seekp(static_cast<std::streamoff>(offset));
   file.put(byte);
 }
 
@@ -51,10 +51,10 @@ TEST_CASE("a bit flipped anywhere in a file is noticed") {
   run_to_end(path);
   const std::uint64_t size = std::filesystem::file_size(path);
   for (std::uint64_t k = 0; k < 100; ++k) {
-    const std::uint64_t at = k == 99 ? size - 1 : k * size / 99;
+    const std::uint64_t offset = k == 99 ? size - 1 : k * size / 99;
     std::filesystem::copy_file(path, copy, std::filesystem::copy_options::overwrite_existing);
-    flip_bit(copy, at);
-    CAPTURE(at, size);
+    flip_bit(copy, offset);
+    CAPTURE(offset, size);
     CHECK_THROWS_WITH(ResultsFile(copy), Contains(copy));
     CHECK_THROWS_AS(digest_of(copy), ResultsError);
     CHECK_THROWS_AS(RunStore::resume(copy, synthetic::study(), {}, provenance()), ResultsError);
@@ -121,8 +121,8 @@ TEST_CASE("a missing segment is refused") {
 TEST_CASE("parts of another run, realization or place in the series are refused") {
   const KilledRun run;
   SECTION("another run") {
-    const KilledRun other;
-    std::filesystem::copy_file(other.state, run.state,
+    const KilledRun second;
+    std::filesystem::copy_file(second.state, run.state,
                                std::filesystem::copy_options::overwrite_existing);
     CHECK_THROWS_WITH(run.resume(), Contains(run.state) && Contains("another run"));
   }

@@ -23,12 +23,12 @@ TEST_CASE("The page of the format quotes the numbers of its formats as they are"
 
 TEST_CASE("The page of the format names all that snapshots keep of spheres and by height") {
   const std::string page = read_text_file(source_file("docs/reference/file-format.md"));
-  for (const SphereVector& one : sphere_vectors) {
-    INFO(one.name);
-    CHECK(page.find(fmt::format("{}/value`", one.name)) != std::string::npos);
+  for (const SphereVector& vector : sphere_vectors) {
+    INFO(vector.name);
+    CHECK(page.find(fmt::format("{}/value`", vector.name)) != std::string::npos);
   }
-  for (const HeightProfile& one : height_profiles) {
-    INFO(one.name);
-    CHECK(page.find(one.name) != std::string::npos);
+  for (const HeightProfile& profile : height_profiles) {
+    INFO(profile.name);
+    CHECK(page.find(profile.name) != std::string::npos);
   }
 }

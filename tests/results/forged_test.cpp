@@ -19,7 +19,7 @@ using namespace jostle::synthetic;
 
 namespace {
 
-constexpr int few = 12, many = 400;  // few spheres of a kind
+constexpr int few = 12, n_large = 400;  // few spheres of a kind
 
 /// Half of the files are unfinished, so that they can be resumed.
 void write_file(const std::string& path, bool finished) {
@@ -56,7 +56,7 @@ void try_forgeries(std::size_t kind, int n) {
                                std::filesystem::copy_options::overwrite_existing);
     CAPTURE(forgery_name(kind), i);
     forge(path, kind, choices);
-    if (i % 4 == 3) forge(path, choices.below(n_forgeries), choices);
+    if (i % 4 == 3) forge(path, choices.integer_below(n_forgeries), choices);
     REQUIRE_NOTHROW(refusals += use_in_every_way(path));
     uses += n_uses();
     std::filesystem::remove_all(path + ".parts");
@@ -77,7 +77,7 @@ TEST_CASE("a results file forged in any way is refused or used, and nothing else
 }
 
 TEST_CASE("hundreds of forged results files are refused or used", "[nightly]") {
-  try_forgeries(GENERATE(range(std::size_t{0}, n_forgeries)), many);
+  try_forgeries(GENERATE(range(std::size_t{0}, n_forgeries)), n_large);
 }
 
 TEST_CASE("a file that nobody forged is used in every way") {

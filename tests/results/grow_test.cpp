@@ -44,9 +44,9 @@ std::string resumed_digest(const std::string& path, const Study& study) {
 TEST_CASE("a run that was finished takes more sweep points, wherever they come") {
   const TemporaryFolder folder;
   const Study study = grown();
-  const Study before = synthetic::study();
-  REQUIRE(PointNumbers(study).of(before.points[0].id) == 1u);
-  REQUIRE(PointNumbers(study).of(before.points[1].id) == 3u);
+  const Study study_before = synthetic::study();
+  REQUIRE(PointNumbers(study).find(study_before.points[0].id) == 1u);
+  REQUIRE(PointNumbers(study).find(study_before.points[1].id) == 3u);
   const std::string expected = digest_at_once(folder / "once.h5", study);
   synthetic::run_to_end(folder / "grown.h5");
   {
@@ -63,9 +63,9 @@ TEST_CASE("a run that was killed or stopped takes more sweep points, and keeps i
   const std::string path = folder / "grown.h5";
   const bool killed = GENERATE(true, false);
   {
-    const Study before = synthetic::study();
-    const auto store = RunStore::create(path, before, {}, provenance());
-    synthetic::run_pending(*store, before, {.steps = 7, .leave_without_end = killed});
+    const Study study_before = synthetic::study();
+    const auto store = RunStore::create(path, study_before, {}, provenance());
+    synthetic::run_pending(*store, study_before, {.steps = 7, .leave_without_end = killed});
     if (!killed) store->finish();
   }
   CHECK(parts_exist(path) == killed);
@@ -73,7 +73,7 @@ TEST_CASE("a run that was killed or stopped takes more sweep points, and keeps i
     const auto store = RunStore::resume(path, study, {}, provenance());
     const ResultsFile file(path);
     for (std::uint32_t r = 0; r < 3; ++r) {
-      const auto point = PointNumbers(study).of(synthetic::study().points[1].id);
+      const auto point = PointNumbers(study).find(synthetic::study().points[1].id);
       CHECK(file.record({*point, r}).rows.size() > 0);
     }
     // Killed again, with parts of the new numbers.
@@ -100,12 +100,12 @@ TEST_CASE("runs of some points each merge into the run of all") {
   std::vector<std::string> paths;
   const std::vector<std::vector<std::size_t>> shares = {{3, 0}, {1}, {2}};
   for (const auto& points : shares) {
-    Study some = study;
-    some.resolved_scene += std::to_string(paths.size());
-    some.points.clear();
-    for (const std::size_t point : points) some.points.push_back(study.points[point]);
+    Study subset = study;
+    subset.resolved_scene += std::to_string(paths.size());
+    subset.points.clear();
+    for (const std::size_t point : points) subset.points.push_back(study.points[point]);
     paths.push_back(folder / ("share" + std::to_string(paths.size()) + ".h5"));
-    digest_at_once(paths.back(), some);
+    digest_at_once(paths.back(), subset);
   }
   CHECK_THROWS_WITH(merge_files(paths, folder / "no.h5", provenance()),
                     Contains("holds another scene"));

@@ -46,18 +46,19 @@ struct Place {
     const auto slash = path.rfind('/');
     return slash == std::string::npos ? "/" : path.substr(0, slash);
   }
-  const std::string& another() const { return objects[choices.below(objects.size())]; }
+  const std::string& another() const { return objects[choices.integer_below(objects.size())]; }
   void remove() const { H5Ldelete(file, path.c_str(), H5P_DEFAULT); }
 };
 
 template <class Number>
 Number extreme(Choices& choices) {
   using Limits = std::numeric_limits<Number>;
-  const Number numbers[] = {Number{0},           Number{1},
-                            Limits::max(),       Limits::lowest(),
-                            Limits::min(),       Limits::infinity(),
-                            Limits::quiet_NaN(), static_cast<Number>(choices.below(1 << 20))};
-  return numbers[choices.below(std::size(numbers))];
+  const Number numbers[] = {
+      Number{0},           Number{1},
+      Limits::max(),       Limits::lowest(),
+      Limits::min(),       Limits::infinity(),
+      Limits::quiet_NaN(), static_cast<Number>(choices.integer_below(1 << 20))};
+  return numbers[choices.integer_below(std::size(numbers))];
 }
 
 constexpr std::size_t most_values = 4096;
@@ -69,18 +70,18 @@ struct Values {
 };
 
 Values extreme_values(Choices& choices) {
-  if (choices.below(2) == 0) {
+  if (choices.integer_below(2) == 0) {
     Values values{H5T_NATIVE_DOUBLE};
-    for (auto& one : values.bits) one = std::bit_cast<std::uint64_t>(extreme<double>(choices));
+    for (auto& bits : values.bits) bits = std::bit_cast<std::uint64_t>(extreme<double>(choices));
     return values;
   }
   Values values{H5T_NATIVE_UINT64};
-  for (auto& one : values.bits) one = extreme<std::uint64_t>(choices);
+  for (auto& bits : values.bits) bits = extreme<std::uint64_t>(choices);
   return values;
 }
 
 std::string odd_text(Choices& choices) {
-  switch (choices.below(8)) {
+  switch (choices.integer_below(8)) {
     case 0:
       return "";
     case 1:
@@ -96,7 +97,7 @@ std::string odd_text(Choices& choices) {
     case 6:
       return "complete";
     default:
-      return fmt::format("{}", choices.below(100));
+      return fmt::format("{}", choices.integer_below(100));
   }
 }
 
@@ -128,7 +129,7 @@ std::vector<hsize_t> odd_shape(Choices& choices) {
   const std::vector<hsize_t> shapes[] = {{},        {0},       {1},          {3},    {2, 3},
                                          {7, 3},    {3, 7},    {7},          {6, 3}, {0, 3},
                                          {3, 5, 3}, {3, 4, 3}, {1, 1, 1, 1}, {4000}};
-  return shapes[choices.below(std::size(shapes))];
+  return shapes[choices.integer_below(std::size(shapes))];
 }
 
 void rewrite_values(const Place& place) {
@@ -166,8 +167,9 @@ void change_attribute(const Place& place, const std::function<void(hid_t, const 
   H5Oget_info2(object, &info, H5O_INFO_NUM_ATTRS);
   if (info.num_attrs > 0) {
     char name[256] = {};
-    H5Aget_name_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC, place.choices.below(info.num_attrs),
-                       name, sizeof name - 1, H5P_DEFAULT);
+    H5Aget_name_by_idx(object, ".", H5_INDEX_NAME, H5_ITER_INC,
+                       place.choices.integer_below(info.num_attrs), name, sizeof name - 1,
+                       H5P_DEFAULT);
     change(object, name);
   }
   H5Oclose(object);
@@ -180,7 +182,7 @@ void write_odd_attribute(const Place& place, hid_t object, const char* name) {
                           ? H5Screate(H5S_SCALAR)
                           : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
   const hid_t types[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_UINT64, H5T_NATIVE_INT8, H5T_STD_REF_OBJ};
-  const hid_t type = types[place.choices.below(std::size(types))];
+  const hid_t type = types[place.choices.integer_below(std::size(types))];
   const hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
   const Values values = extreme_values(place.choices);
   if (attribute >= 0) H5Awrite(attribute, type, values.bits.data());
@@ -225,35 +227,36 @@ constexpr Forgery forgeries[] = {
      [](const Place& place) {
        const char* files[] = {"/dev/zero", "other.h5", "/proc/self/mem", "/dev/stdin"};
        place.remove();
-       H5Lcreate_external(files[place.choices.below(4)], ("/" + place.path).c_str(), place.file,
-                          place.path.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+       H5Lcreate_external(files[place.choices.integer_below(4)], ("/" + place.path).c_str(),
+                          place.file, place.path.c_str(), H5P_DEFAULT, H5P_DEFAULT);
      }},
     {"a second hard link, perhaps in a circle",
      [](const Place& place) {
-       const std::string target = place.choices.below(2) == 0 ? "/" : place.another();
+       const std::string target = place.choices.integer_below(2) == 0 ? "/" : place.another();
        const std::string name =
-           place.choices.below(2) == 0 ? place.folder() + "/again" : place.path;
+           place.choices.integer_below(2) == 0 ? place.folder() + "/again" : place.path;
        if (name == place.path) place.remove();
        H5Lcreate_hard(place.file, target.c_str(), place.file, name.c_str(), H5P_DEFAULT,
                       H5P_DEFAULT);
      }},
     {"a dataset of another shape",
      [](const Place& place) {
-       create_dataset(place, H5T_IEEE_F64LE, odd_shape(place.choices), place.choices.below(2) == 0);
+       create_dataset(place, H5T_IEEE_F64LE, odd_shape(place.choices),
+                      place.choices.integer_below(2) == 0);
      }},
     {"a dataset of another type",
      [](const Place& place) {
        const hid_t text = H5Tcopy(H5T_C_S1);
-       H5Tset_size(text, place.choices.below(2) == 0 ? 3 : H5T_VARIABLE);
+       H5Tset_size(text, place.choices.integer_below(2) == 0 ? 3 : H5T_VARIABLE);
        const hid_t types[] = {text, H5T_STD_I8BE, H5T_STD_REF_OBJ, H5T_STD_U64LE, H5T_IEEE_F32BE};
-       create_dataset(place, types[place.choices.below(5)], odd_shape(place.choices));
+       create_dataset(place, types[place.choices.integer_below(5)], odd_shape(place.choices));
        H5Tclose(text);
      }},
     {"more values than bytes",
      [](const Place& place) {
        const std::vector<hsize_t> shapes[] = {
            {hsize_t{1} << 40}, {hsize_t{1} << 62, 3}, {1u << 20, 1u << 20}, {20'000'000}};
-       create_dataset(place, H5T_IEEE_F64LE, shapes[place.choices.below(4)], true);
+       create_dataset(place, H5T_IEEE_F64LE, shapes[place.choices.integer_below(4)], true);
      }},
     {"other values", rewrite_values},
     {"another text", rewrite_text},
@@ -278,10 +281,11 @@ constexpr Forgery forgeries[] = {
      }},
     {"two objects change places",
      [](const Place& place) {
-       const std::string other = place.another();
+       const std::string second_path = place.another();
        H5Lmove(place.file, place.path.c_str(), place.file, "between", H5P_DEFAULT, H5P_DEFAULT);
-       H5Lmove(place.file, other.c_str(), place.file, place.path.c_str(), H5P_DEFAULT, H5P_DEFAULT);
-       H5Lmove(place.file, "between", place.file, other.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+       H5Lmove(place.file, second_path.c_str(), place.file, place.path.c_str(), H5P_DEFAULT,
+               H5P_DEFAULT);
+       H5Lmove(place.file, "between", place.file, second_path.c_str(), H5P_DEFAULT, H5P_DEFAULT);
      }},
 };
 static_assert(std::size(forgeries) == n_forgeries);
@@ -295,7 +299,7 @@ void go_on_with(const std::string& path) {
 
 void read_all(const std::string& path) {
   const ResultsFile file(path);
-  for (const RealizationSummary& one : file.realizations()) file.record(one.id);
+  for (const RealizationSummary& realization : file.realizations()) file.record(realization.id);
   for (std::uint32_t point = 0; point < file.study().points.size(); ++point) {
     file.series(point);
     file.ensemble(point);
@@ -328,7 +332,7 @@ const std::function<void(const std::string&)> uses[] = {
 
 }  // namespace
 
-std::size_t Choices::below(std::size_t n) {
+std::size_t Choices::integer_below(std::size_t n) {
   std::size_t number = 0;
   for (int i = 0; i < 3 && !bytes_.empty(); ++i) {
     number = number << 8 | bytes_.front();
@@ -345,8 +349,8 @@ void forge(const std::string& path, std::size_t kind, Choices& choices) {
   WritableHdf5File file(path, WritableHdf5File::Begin::as_it_is);
   Paths objects = all_objects(file);
   if (!objects.empty()) {
-    std::string one = objects[choices.below(objects.size())];
-    forgeries[kind].make({file, std::move(objects), std::move(one), choices});
+    std::string object = objects[choices.integer_below(objects.size())];
+    forgeries[kind].make({file, std::move(objects), std::move(object), choices});
   }
   H5Eclear2(H5E_DEFAULT);
   file.close();

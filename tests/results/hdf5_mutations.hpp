@@ -15,7 +15,7 @@ class Choices {
   explicit Choices(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
   bool any_left() const { return !bytes_.empty(); }
   /// 0 .. n - 1.
-  std::size_t below(std::size_t n);
+  std::size_t integer_below(std::size_t n);
 
  private:
   std::span<const std::uint8_t> bytes_;

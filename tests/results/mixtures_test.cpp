@@ -35,9 +35,9 @@ void forge(const std::string& path, const std::function<void(hid_t)>& change) {
 }
 
 template <class Number>
-void put(hid_t file, const std::string& name, std::uint64_t at, Number value) {
+void put(hid_t file, const std::string& name, std::uint64_t index, Number value) {
   auto values = read_numbers<Number>(file, name);
-  values.at(at) = value;
+  values.at(index) = value;
   const Hdf5Handle dataset = open_dataset(file, name);
   checked(H5Dwrite(dataset, Hdf5Number<Number>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
                    values.data()));
@@ -113,11 +113,11 @@ TEST_CASE("realizations that have not begun have no drawn sizes") {
   const StudySize size{.kinds = StudySpheres::drawn};
   run_to_end(folder / "share.h5", size, {1, 3});
   const ResultsFile file(folder / "share.h5");
-  for (const RealizationSummary& one : file.realizations()) {
-    if (one.status == RealizationStatus::done)
-      CHECK(file.sizes(one.id)->size() == 5);
+  for (const RealizationSummary& realization : file.realizations()) {
+    if (realization.status == RealizationStatus::done)
+      CHECK(file.sizes(realization.id)->size() == 5);
     else
-      CHECK_THROWS_WITH(file.sizes(one.id), Contains("has not begun"));
+      CHECK_THROWS_WITH(file.sizes(realization.id), Contains("has not begun"));
   }
 }
 
@@ -133,8 +133,8 @@ TEST_CASE("restart states keep drawn sizes, and those of equal spheres keep thei
   CHECK(mixed.bytes().size() == equal.bytes().size() + 16);
   ByteReader reader(mixed.bytes());
   CHECK(get_realization_state(reader).diameters == state.diameters);
-  ByteReader other(equal.bytes());
-  CHECK(get_realization_state(other).diameters.empty());
+  ByteReader second_reader(equal.bytes());
+  CHECK(get_realization_state(second_reader).diameters.empty());
 }
 
 TEST_CASE("files with wrong, missing or NaN sizes are refused") {
@@ -161,8 +161,9 @@ TEST_CASE("files with wrong, missing or NaN sizes are refused") {
     CHECK_NOTHROW(drawn.restart_state({0, 1}));
   }
   // A restart state with other spheres than those stored.
-  const ResultsFile other(forged("drawn.h5", [&](hid_t file) { put(file, diameter, 2, 1.3); }));
-  CHECK_THROWS_WITH(other.restart_state({0, 0}), Contains("spheres of other sizes"));
+  const ResultsFile forged_file(
+      forged("drawn.h5", [&](hid_t file) { put(file, diameter, 2, 1.3); }));
+  CHECK_THROWS_WITH(forged_file.restart_state({0, 0}), Contains("spheres of other sizes"));
   const auto refused = [&](const char* name, const std::function<void(hid_t)>& change) {
     CHECK_THROWS_AS(ResultsFile(forged(name, change)), ResultsError);
   };

@@ -50,6 +50,6 @@ TEST_CASE("columns of an engine of one's own go into the file with their descrip
   const std::vector<Series> series = file.series(0);
   REQUIRE(series.size() == 3);
   CHECK(series[1].label.name == "steps");
-  CHECK(series[1].at(6, 1) > 1);
+  CHECK(series[1].value(6, 1) > 1);
   CHECK(file.ensemble(0)[2].mean == std::vector<double>(7, 0));
 }

@@ -51,18 +51,19 @@ using Steps = std::vector<std::pair<const char*, std::function<void(const Size&)
 
 /// How much longer each step takes with `large` than with `small`.
 template <class Size>
-void check_steps(const char* what, const Steps<Size>& steps, const Size& small, const Size& large) {
+void check_steps(const char* title, const Steps<Size>& steps, const Size& small,
+                 const Size& large) {
   for (const auto& [step, work] : steps) {
-    const double one = processor_seconds([&, &run = work] { run(small); });
-    const double more = processor_seconds([&, &run = work] { run(large); });
-    fmt::print("{} times the {}: {:12} {:7.1f} ms, {:7.1f} ms, {:.2f} times\n", times, what, step,
-               1e3 * one, 1e3 * more, more / one);
-    CAPTURE(what, step, one, more);
-    CHECK(more < most_growth * one);
+    const double small_time = processor_seconds([&, &run = work] { run(small); });
+    const double large_time = processor_seconds([&, &run = work] { run(large); });
+    fmt::print("{} times the {}: {:12} {:7.1f} ms, {:7.1f} ms, {:.2f} times\n", times, title, step,
+               1e3 * small_time, 1e3 * large_time, large_time / small_time);
+    CAPTURE(title, step, small_time, large_time);
+    CHECK(large_time < most_growth * small_time);
   }
 }
 
-void check_growth(const char* what, const synthetic::StudySize& small,
+void check_growth(const char* title, const synthetic::StudySize& small,
                   const synthetic::StudySize& large) {
   const TemporaryFolder folder;
   const auto path = [&](const synthetic::StudySize& sizes) {
@@ -83,7 +84,7 @@ void check_growth(const char* what, const synthetic::StudySize& small,
   const auto digested = [&](const synthetic::StudySize& sizes) { digest_of(path(sizes)); };
   const Steps<synthetic::StudySize> steps = {
       {"run and fold", written}, {"open", opened}, {"digest", digested}};
-  check_steps(what, steps, small, large);
+  check_steps(title, steps, small, large);
 }
 
 /// A bed of as many spheres in a wider box.
@@ -159,10 +160,10 @@ TEST_CASE("a sweep point that has not begun takes two kilobytes, and reads as mi
     study.points.back().snapshots.bin_width = 0.2;  // keeps something else than those before it
     const std::size_t n_columns = study.points[0].n_columns();
     const auto record = [&](RealizationId id) {
-      RealizationRecord one;
-      if (id.point == 1) one.status = RealizationStatus::running;
-      if (id.point == 1) one.rows.assign(3 * n_columns, 0.5);
-      return in_memory(one, n_columns);
+      RealizationRecord realization_record;
+      if (id.point == 1) realization_record.status = RealizationStatus::running;
+      if (id.point == 1) realization_record.rows.assign(3 * n_columns, 0.5);
+      return in_memory(realization_record, n_columns);
     };
     write_results(path, {study, {}, {synthetic::provenance()}, "run", record});
     return std::filesystem::file_size(path);
@@ -201,10 +202,10 @@ TEST_CASE("a run that is stopped early stores what is there, however much was pl
     const Study study = synthetic::study({.points = 2, .realizations = 2, .taps = taps});
     const std::size_t n_columns = study.points[0].n_columns();
     const auto record = [&](RealizationId id) {
-      RealizationRecord one;
-      one.status = RealizationStatus::running;
-      one.rows.assign((id.realization == 0 ? 7 : 3) * n_columns, 0.5);
-      return in_memory(one, n_columns);
+      RealizationRecord realization_record;
+      realization_record.status = RealizationStatus::running;
+      realization_record.rows.assign((id.realization == 0 ? 7 : 3) * n_columns, 0.5);
+      return in_memory(realization_record, n_columns);
     };
     write_results(path, {study, {}, {synthetic::provenance()}, "run", record});
     const ResultsFile file(path);

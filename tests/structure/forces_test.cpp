@@ -55,19 +55,20 @@ TEST_CASE("the force-moment tensor is the sum of arm times force") {
   const BedForces forces = bed_forces(corner, contacts);
   // Its trace is that of the normal forces: the distance of the centres times each.
   double trace = 0;
-  for (const Contact& one : contacts)
-    trace += one.normal_force * (one.second < 3 ? 1 - one.overlap : 0.5 - one.overlap);
+  for (const Contact& contact : contacts)
+    trace +=
+        contact.normal_force * (contact.second < 3 ? 1 - contact.overlap : 0.5 - contact.overlap);
   CHECK(forces.moment[0] + forces.moment[4] + forces.moment[8] == Approx(trace));
   // By hand: x times x, and x times z.
   CHECK(forces.moment[0] == Approx(0.98 * -0.6 * (3 * -0.6 + 0.8) + 0.4 * 2 + 0.45 * 1));
   CHECK(forces.moment[2] == Approx(0.98 * -0.6 * (3 * -0.8 - 0.6) + 0.4 * 0.75 + 0.45 * 0.25));
   CHECK(forces.moment[6] == Approx(0.98 * -0.8 * (3 * -0.6 + 0.8) + 0.5 * 0.5));
 
-  const std::vector<ForceMoment> each = force_moments(contacts, 3);
-  REQUIRE(each.size() == 3);
+  const std::vector<ForceMoment> moments = force_moments(contacts, 3);
+  REQUIRE(moments.size() == 3);
   for (std::size_t k = 0; k < 9; ++k)
-    CHECK(each[0][k] + each[1][k] + each[2][k] == Approx(forces.moment[k]));
-  CHECK(each[2] == ForceMoment{});
+    CHECK(moments[0][k] + moments[1][k] + moments[2][k] == Approx(forces.moment[k]));
+  CHECK(moments[2] == ForceMoment{});
 }
 
 // Radii 0.3, 0.9 and 0.5: a contact divides the line of the centres as the radii do.
@@ -77,19 +78,20 @@ TEST_CASE("the force-moment tensor of spheres of several sizes has the arms of t
   const BedForces forces = bed_forces(mixed, contacts);
   const auto radius = [&](std::uint32_t i) { return i < 3 ? mixed.sizes->radius(i) : 0; };
   double trace = 0;
-  for (const Contact& one : contacts)
-    trace += one.normal_force * (radius(one.first) + radius(one.second) - one.overlap);
+  for (const Contact& contact : contacts)
+    trace +=
+        contact.normal_force * (radius(contact.first) + radius(contact.second) - contact.overlap);
   CHECK(forces.moment[0] + forces.moment[4] + forces.moment[8] == Approx(trace));
-  const std::vector<ForceMoment> each = force_moments(contacts, 3, mixed.sizes.get());
+  const std::vector<ForceMoment> moments = force_moments(contacts, 3, mixed.sizes.get());
   for (std::size_t k = 0; k < 9; ++k)
-    CHECK(each[0][k] + each[1][k] + each[2][k] == Approx(forces.moment[k]));
+    CHECK(moments[0][k] + moments[1][k] + moments[2][k] == Approx(forces.moment[k]));
   double of_first = 0;
-  for (const Contact& one : contacts) {
-    const double reach = radius(one.first) + radius(one.second);
-    const double share = (reach - one.overlap) / reach;
-    if (one.first == 0 || one.second == 0) of_first += one.normal_force * share * 0.3;
+  for (const Contact& contact : contacts) {
+    const double reach = radius(contact.first) + radius(contact.second);
+    const double share = (reach - contact.overlap) / reach;
+    if (contact.first == 0 || contact.second == 0) of_first += contact.normal_force * share * 0.3;
   }
-  CHECK(each[0][0] + each[0][4] + each[0][8] == Approx(of_first));
+  CHECK(moments[0][0] + moments[0][4] + moments[0][8] == Approx(of_first));
 }
 
 TEST_CASE("granular temperature is the variance of velocities by height") {
@@ -110,7 +112,7 @@ TEST_CASE("granular temperature is the variance of velocities by height") {
   CHECK(found.lateral[14] == 0);
   CHECK(found.vertical[14] == Approx(2));
   // Against a bed that moves as a whole.
-  for (Vec3& one : velocities) one = one + Vec3{10, -20, 30};
+  for (Vec3& velocity : velocities) velocity = velocity + Vec3{10, -20, 30};
   const GranularTemperature moved = granular_temperature(bed, velocities, 0.1);
   CHECK(moved.lateral[5] == Approx(found.lateral[5]));
   CHECK(moved.vertical[14] == Approx(found.vertical[14]));

@@ -35,7 +35,7 @@ double single(const Measurement& measurement, const std::string& name) {
   return quantity->values[0];
 }
 
-const std::vector<double>& along(const Measurement& measurement, std::string_view name) {
+const std::vector<double>& values_of(const Measurement& measurement, std::string_view name) {
   const MeasuredQuantity* quantity = measurement.find(name);
   REQUIRE(quantity != nullptr);
   return quantity->values;
@@ -73,8 +73,8 @@ Packing fcc() {
 Packing spread(const Packing& all, std::size_t most) {
   Packing kept{all.container, {}};
   for (const Vec3& r : all.centres) {
-    const bool is_free = std::ranges::none_of(kept.centres, [&](Vec3 other) {
-      return norm_squared(separation(Boundary(all.container), r, other)) < 0.49;
+    const bool is_free = std::ranges::none_of(kept.centres, [&](Vec3 neighbour) {
+      return norm_squared(separation(Boundary(all.container), r, neighbour)) < 0.49;
     });
     if (is_free && kept.centres.size() < most) kept.centres.push_back(r);
   }
@@ -117,40 +117,41 @@ TEST_CASE("Parts of the reference deposit agree with what its maker and voro++ m
   const std::vector<Measurement> all = measure(deposit, all_structure(), points);
 
   const Measurement& profile = part(all, "profile");
-  double solids = sum(along(profile, "phi")) * 0.1 * footprint_area(deposit.container);
+  double solids = sum(values_of(profile, "phi")) * 0.1 * footprint_area(deposit.container);
   CHECK(solids == Approx(4096 * std::numbers::pi / 6).epsilon(1e-12));
   CHECK(single(profile, "phi_region") == Approx(solids_fraction(deposit, {1, 10})).epsilon(1e-12));
   const Measurement& layers = part(all, "layers");
-  CHECK(sum(along(layers, "n")) == Approx(1).epsilon(1e-12));
+  CHECK(sum(values_of(layers, "n")) == Approx(1).epsilon(1e-12));
   CHECK(places(layers, "layer_height")[1] == Approx(0.5 + std::sqrt(2.0 / 3)).epsilon(1e-14));
 
   const Measurement& coordination = part(all, "coordination");
-  CHECK(sum(along(coordination, "neighbour_share")) == Approx(1).epsilon(1e-12));
+  CHECK(sum(values_of(coordination, "neighbour_share")) == Approx(1).epsilon(1e-12));
   // The first cut of the curve that is the cut of the counts.
-  CHECK(along(coordination, "n_c_of_cut")[5] == Approx(single(coordination, "n_c")).epsilon(1e-12));
+  CHECK(values_of(coordination, "n_c_of_cut")[5] ==
+        Approx(single(coordination, "n_c")).epsilon(1e-12));
 
   const Measurement& cells = part(all, "voronoi");
   CHECK(std::abs(single(cells, "volume_excess")) < 1e-10);
-  CHECK(sum(along(cells, "face_share")) == Approx(1).epsilon(1e-12));
-  CHECK(sum(along(cells, "free_volume_density")) * 0.02 == Approx(1).margin(2e-3));
-  CHECK(sum(along(cells, "local_fraction_density")) * 0.01 == Approx(1).epsilon(1e-12));
+  CHECK(sum(values_of(cells, "face_share")) == Approx(1).epsilon(1e-12));
+  CHECK(sum(values_of(cells, "free_volume_density")) * 0.02 == Approx(1).margin(2e-3));
+  CHECK(sum(values_of(cells, "local_fraction_density")) * 0.01 == Approx(1).epsilon(1e-12));
   CHECK(single(cells, "mean_free_volume") ==
         Approx(single(cells, "mean_volume") / (std::numbers::pi / 6) - 1).epsilon(1e-12));
 
   const Measurement& found = part(all, "pores");
-  const double number = sum(along(found, "rho_xi")) * 0.02;
+  const double number = sum(values_of(found, "rho_xi")) * 0.02;
   CHECK(number == Approx(single(found, "n_pores")).epsilon(1e-3));
   const std::vector<double> xi = places(found, "xi");
   for (std::size_t k = 0; k < xi.size(); ++k) {
-    const double rho_xi = along(found, "rho_xi")[k];
-    CHECK(along(found, "v_rho_v")[k] == Approx(xi[k] / 3 * rho_xi).epsilon(1e-9).margin(1e-9));
+    const double rho_xi = values_of(found, "rho_xi")[k];
+    CHECK(values_of(found, "v_rho_v")[k] == Approx(xi[k] / 3 * rho_xi).epsilon(1e-9).margin(1e-9));
   }
 
   const Measurement& voids = part(all, "void_probability");
   CHECK(single(voids, "phi") == Approx(solids_fraction(deposit, {1, 10})).epsilon(1e-12));
-  CHECK(along(voids, "p0")[0] == 1);
+  CHECK(values_of(voids, "p0")[0] == 1);
   for (std::size_t k = 1; k <= 20; ++k) {  // eq. 8, but for spheres at the region's ends
-    CHECK(along(voids, "p0")[k] == Approx(along(voids, "p0_gotoh")[k]).margin(2e-3));
+    CHECK(values_of(voids, "p0")[k] == Approx(values_of(voids, "p0_gotoh")[k]).margin(2e-3));
   }
 }
 
@@ -166,8 +167,8 @@ TEST_CASE("A perfect crystal is one everywhere") {
   CHECK(single(part(all, "voronoi"), "mean_faces") == 12);
   // Cells of one size: no noise is printed as a variance, and no ratio of it.
   CHECK(single(part(all, "voronoi"), "sigma_free_volume") == 0);
-  for (const double variance : along(part(all, "clusters"), "variance")) CHECK(variance == 0);
-  for (const double ratio : along(part(all, "clusters"), "relative_variance")) {
+  for (const double variance : values_of(part(all, "clusters"), "variance")) CHECK(variance == 0);
+  for (const double ratio : values_of(part(all, "clusters"), "relative_variance")) {
     CHECK(std::isnan(ratio));
   }
   CHECK(single(part(all, "voronoi"), "mean_free_volume") ==
@@ -179,8 +180,8 @@ TEST_CASE("A perfect crystal is one everywhere") {
         Approx(std::numbers::pi / std::numbers::sqrt2 / 3).epsilon(1e-9));
   CHECK(single(part(all, "holes"), "unclassified") == 0);
   // Two tetrahedra and one octahedron, that is two half-octahedra, a sphere.
-  CHECK(along(part(all, "holes"), "number_fraction")[0] == Approx(0.5).epsilon(1e-12));
-  CHECK(along(part(all, "holes"), "number_fraction")[1] == Approx(0.5).epsilon(1e-12));
+  CHECK(values_of(part(all, "holes"), "number_fraction")[0] == Approx(0.5).epsilon(1e-12));
+  CHECK(values_of(part(all, "holes"), "number_fraction")[1] == Approx(0.5).epsilon(1e-12));
 }
 
 TEST_CASE("Parts that a container does not have are refused, and others are measured") {
@@ -238,9 +239,9 @@ TEST_CASE("Only what has settings is measured") {
   StructureSettings settings;
   CHECK(measure(fcc(), settings, points).empty());
   settings.order.emplace();
-  const std::vector<Measurement> one = measure(fcc(), settings, points);
-  REQUIRE(one.size() == 1);
-  CHECK(one[0].part == "order");
+  const std::vector<Measurement> measurements = measure(fcc(), settings, points);
+  REQUIRE(measurements.size() == 1);
+  CHECK(measurements[0].part == "order");
 }
 
 TEST_CASE("Spheres inside one another are refused, as of a file in other units") {
@@ -322,9 +323,9 @@ TEST_CASE("Between close sides order has a note, and ratios of few clusters have
           Approx(0.965 * bulk).margin(0.035 * bulk + 0.3 / std::sqrt(spheres)));
     const Measurement& clusters = part(all, "clusters");
     if (!clusters.refused.empty()) continue;
-    for (std::size_t k = 0; k < along(clusters, "n_clusters").size(); ++k) {
-      if (along(clusters, "n_clusters")[k] >= 10) continue;
-      CHECK(std::isnan(along(clusters, "relative_variance")[k]));
+    for (std::size_t k = 0; k < values_of(clusters, "n_clusters").size(); ++k) {
+      if (values_of(clusters, "n_clusters")[k] >= 10) continue;
+      CHECK(std::isnan(values_of(clusters, "relative_variance")[k]));
     }
   }
 }

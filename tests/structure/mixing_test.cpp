@@ -41,14 +41,14 @@ double observed(const Packing& packing, const Observable& observable) {
 
 TEST_CASE("kinds apart: S is 1 or -1 and Lacey's index 0") {
   const std::size_t n = 12 * 36;
-  const Packing up = layered(12, [&](std::size_t i) { return i < n / 2 ? 0u : 1u; });
-  const Packing down = layered(12, [&](std::size_t i) { return i < n / 2 ? 1u : 0u; });
-  CHECK(segregation(up, 1, 0) == Approx(1).epsilon(1e-12));
-  CHECK(segregation(down, 1, 0) == Approx(-1).epsilon(1e-12));
-  CHECK(kind_height(up, 0) == Approx(3));
-  CHECK(kind_height(up, 1) == Approx(9));
-  CHECK(lacey_index(up, 1, 2) == Approx(0).margin(1e-12));
-  CHECK(lacey_index(up, 0, 2) == Approx(0).margin(1e-12));
+  const Packing upward = layered(12, [&](std::size_t i) { return i < n / 2 ? 0u : 1u; });
+  const Packing downward = layered(12, [&](std::size_t i) { return i < n / 2 ? 1u : 0u; });
+  CHECK(segregation(upward, 1, 0) == Approx(1).epsilon(1e-12));
+  CHECK(segregation(downward, 1, 0) == Approx(-1).epsilon(1e-12));
+  CHECK(kind_height(upward, 0) == Approx(3));
+  CHECK(kind_height(upward, 1) == Approx(9));
+  CHECK(lacey_index(upward, 1, 2) == Approx(0).margin(1e-12));
+  CHECK(lacey_index(upward, 0, 2) == Approx(0).margin(1e-12));
 }
 
 TEST_CASE("kinds side by side are apart for Lacey's index and not for S") {
@@ -68,11 +68,11 @@ TEST_CASE("beds labelled at random have Lacey's index 1 and S 0 on average") {
     constexpr int beds = 400;
     for (int bed = 0; bed < beds; ++bed) {
       for (std::size_t left = n; left > 1; --left)
-        std::swap(labels[left - 1], labels[random.below(left)]);
+        std::swap(labels[left - 1], labels[random.integer_below(left)]);
       const Packing packing = layered(12, [&](std::size_t i) { return labels[i]; });
-      const double one = lacey_index(packing, 1, cell);
-      index += one / beds;
-      squared += one * one / beds;
+      const double lacey = lacey_index(packing, 1, cell);
+      index += lacey / beds;
+      squared += lacey * lacey / beds;
       s += segregation(packing, 1, 0) / beds;
     }
     // Four standard errors.

@@ -76,9 +76,9 @@ Packing doubled(Packing packing, const Container& container) {
 /// n gaps of a g(1 + h) as h^-gamma between low and high, by rejection.
 std::vector<double> drawn_gaps(double gamma, double low, double high, int n, RandomStream& random) {
   std::vector<double> gaps;
-  const double a = 1 - gamma, from = std::pow(low, a), to = std::pow(high, a);
+  const double a = 1 - gamma, start = std::pow(low, a), end = std::pow(high, a);
   while (gaps.size() < static_cast<std::size_t>(n)) {
-    const double gap = std::pow(from + random.uniform() * (to - from), 1 / a);
+    const double gap = std::pow(start + random.uniform() * (end - start), 1 / a);
     if (random.uniform() < std::pow((1 + gap) / (1 + high), 2)) gaps.push_back(gap);
   }
   return gaps;
@@ -135,13 +135,13 @@ TEST_CASE("sides of a mixture hold all that is solid, and are what random points
                                      2 * packing.radius(i));
     const auto profiles = side_profiles(packing, 0.5, window);
     std::vector<std::vector<double>> inside, all;
-    for (const SideProfile& one : profiles) {
+    for (const SideProfile& profile : profiles) {
       double found = 0;
-      for (std::size_t k = 0; k < one.profile.size(); ++k)
-        found += one.profile.values[k] * one.profile.volumes[k];
+      for (std::size_t k = 0; k < profile.profile.size(); ++k)
+        found += profile.profile.values[k] * profile.profile.volumes[k];
       CHECK(found == Approx(solid).epsilon(1e-9));
-      inside.emplace_back(one.profile.size(), 0.0);
-      all.emplace_back(one.profile.size(), 0.0);
+      inside.emplace_back(profile.profile.size(), 0.0);
+      all.emplace_back(profile.profile.size(), 0.0);
     }
     RandomStream random(stream_key(77, 0, 0, Purpose::start));
     for (int k = 0; k < 200'000; ++k) {
@@ -185,12 +185,12 @@ TEST_CASE("sides of a bed of doubled lengths are those of the bed") {
     CAPTURE(container.index());
     packing.container = container;
     const Packing large = doubled(packing, twice_as_wide);
-    const auto one = side_profiles(packing, 0.4, {0.5, 3});
+    const auto single = side_profiles(packing, 0.4, {0.5, 3});
     const auto two = side_profiles(large, 0.8, {1, 6});
-    REQUIRE(one.size() == two.size());
-    for (std::size_t p = 0; p < one.size(); ++p) {
-      for (std::size_t k = 0; k < one[p].profile.size(); ++k)
-        CHECK(two[p].profile.values[k] == Approx(one[p].profile.values[k]).epsilon(1e-12));
+    REQUIRE(single.size() == two.size());
+    for (std::size_t p = 0; p < single.size(); ++p) {
+      for (std::size_t k = 0; k < single[p].profile.size(); ++k)
+        CHECK(two[p].profile.values[k] == Approx(single[p].profile.values[k]).epsilon(1e-12));
     }
     if (Boundary(container).tube) continue;
     const std::vector<double> places{0.1, 3, 8.03}, doubles{0.2, 6, 16.06};
@@ -224,13 +224,13 @@ TEST_CASE("exponents of gaps are found for each two kinds") {
   Packing packing{FullyPeriodicBox{n_side * spacing, n_side * spacing, n_side * spacing}, {}};
   std::vector<double> diameters;
   std::vector<std::uint32_t> kinds;
-  for (int both = 0, site = 0; both < 3; ++both) {
-    for (const double gap : drawn_gaps(gammas[both], 0.01, 0.2, n_pairs, random)) {
-      const double first = both == 2 ? 2 : 1, second = both == 0 ? 1 : 2;
-      const Vec3 at{spacing * (site % n_side) + 1.5, spacing * (site / n_side % n_side) + 1.5,
-                    spacing * (site / (n_side * n_side)) + 1.5};
-      packing.centres.push_back(at);
-      packing.centres.push_back(at + Vec3{0.5 * (first + second) * (1 + gap), 0, 0});
+  for (int combined = 0, site = 0; combined < 3; ++combined) {
+    for (const double gap : drawn_gaps(gammas[combined], 0.01, 0.2, n_pairs, random)) {
+      const double first = combined == 2 ? 2 : 1, second = combined == 0 ? 1 : 2;
+      const Vec3 position{spacing * (site % n_side) + 1.5, spacing * (site / n_side % n_side) + 1.5,
+                          spacing * (site / (n_side * n_side)) + 1.5};
+      packing.centres.push_back(position);
+      packing.centres.push_back(position + Vec3{0.5 * (first + second) * (1 + gap), 0, 0});
       diameters.insert(diameters.end(), {first, second});
       kinds.insert(kinds.end(), {first > 1 ? 1u : 0u, second > 1 ? 1u : 0u});
       ++site;
@@ -263,13 +263,14 @@ TEST_CASE("gaps of an ideal gas of two sizes have no exponents between sides", "
     std::array<std::vector<double>, 4> gaps, weights, wrong;
     for (std::size_t i = 0; i < near.size(); ++i) {
       if (gas.centres[i].z > 8) continue;
-      for (const Neighbour& one : near.of(i)) {
-        const double scaled = std::sqrt(one.distance_squared);
-        const double partner = gas.radius(one.sphere), away = scaled * (gas.radius(i) + partner);
-        const std::size_t pair = 2 * gas.sizes->kind(i) + gas.sizes->kind(one.sphere);
+      for (const Neighbour& neighbour : near.neighbours_of(i)) {
+        const double scaled = std::sqrt(neighbour.distance_squared);
+        const double partner = gas.radius(neighbour.sphere),
+                     distance = scaled * (gas.radius(i) + partner);
+        const std::size_t pair = 2 * gas.sizes->kind(i) + gas.sizes->kind(neighbour.sphere);
         gaps[pair].push_back(scaled - 1);
-        weights[pair].push_back(1 / part(gas.centres[i], away, partner));
-        wrong[pair].push_back(1 / part(gas.centres[i], away));
+        weights[pair].push_back(1 / part(gas.centres[i], distance, partner));
+        wrong[pair].push_back(1 / part(gas.centres[i], distance));
       }
     }
     for (std::size_t pair = 0; pair < 4; ++pair) {
@@ -297,8 +298,9 @@ TEST_CASE("gaps count the more, the less of the shell of a partner's centres sid
   const NeighbourTable near = neighbours_within_contacts(packing, 1.5);
   double least = 1;
   for (std::size_t i = 0; i < near.size(); ++i) {
-    for (const Neighbour& one : near.of(i)) {
-      const double scaled = std::sqrt(one.distance_squared), partner = packing.radius(one.sphere);
+    for (const Neighbour& neighbour : near.neighbours_of(i)) {
+      const double scaled = std::sqrt(neighbour.distance_squared),
+                   partner = packing.radius(neighbour.sphere);
       const double share =
           part(packing.centres[i], scaled * (packing.radius(i) + partner), partner);
       gaps.push_back(scaled - 1);

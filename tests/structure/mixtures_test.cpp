@@ -83,13 +83,13 @@ TEST_CASE("structure: sizes of diameter 1 give the values of equal spheres") {
     CHECK(found[k].refused.empty());
     for (const MeasuredQuantity& quantity : expected[k].quantities) {
       INFO(quantity.name);
-      const std::vector<double>& other = values(found[k], quantity.name);
-      REQUIRE(other.size() == quantity.values.size());
-      for (std::size_t i = 0; i < other.size(); ++i) {
+      const std::vector<double>& reference = values(found[k], quantity.name);
+      REQUIRE(reference.size() == quantity.values.size());
+      for (std::size_t i = 0; i < reference.size(); ++i) {
         if (std::isnan(quantity.values[i])) {
-          CHECK(std::isnan(other[i]));
+          CHECK(std::isnan(reference[i]));
         } else {
-          CHECK(other[i] == Approx(quantity.values[i]).epsilon(1e-12).margin(1e-12));
+          CHECK(reference[i] == Approx(quantity.values[i]).epsilon(1e-12).margin(1e-12));
         }
         ++compared;
       }
@@ -114,8 +114,8 @@ TEST_CASE("structure: neighbours by kinds are those of all pairs, and N_i n_ij =
       spheres[sizes.kind(i)] += 1;
       for (std::size_t j = 0; j < sizes.size(); ++j) {
         const double reach = cut * (sizes.radius(i) + sizes.radius(j));
-        const Vec3 apart = separation(boundary, packing.centres[i], packing.centres[j]);
-        if (i != j && norm_squared(apart) <= reach * reach) ++counts[sizes.kind(i)][sizes.kind(j)];
+        const Vec3 offset = separation(boundary, packing.centres[i], packing.centres[j]);
+        if (i != j && norm_squared(offset) <= reach * reach) ++counts[sizes.kind(i)][sizes.kind(j)];
       }
     }
     const Measurement& measured = part(all, name);
@@ -138,9 +138,10 @@ TEST_CASE("structure: neighbours by kinds are those of all pairs, and N_i n_ij =
   CHECK((420 * (n[0] + n[1]) + 80 * (n[2] + n[3])) / 500 ==
         Approx(values(coordination, "n_c")[0]).epsilon(1e-12));
   const auto cuts = std::ranges::find(coordination.places, "cut", &Places::name);
-  const std::vector<double>& at = std::get<std::vector<double>>(cuts->values);
+  const std::vector<double>& cut_values = std::get<std::vector<double>>(cuts->values);
   const auto k = static_cast<std::size_t>(
-      std::ranges::min_element(at, {}, [](double c) { return std::abs(c - 1.3); }) - at.begin());
+      std::ranges::min_element(cut_values, {}, [](double c) { return std::abs(c - 1.3); }) -
+      cut_values.begin());
   CHECK(values(coordination, "n_c_of_cut")[k] == Approx(values(coordination, "n_c")[0]));
 }
 
@@ -175,8 +176,9 @@ TEST_CASE("structure: the profile of a mixture cuts each sphere by its own radiu
     for (int step = 0; step < n; ++step) {
       const double z = edges[k] + (step + 0.5) / n * (edges[k + 1] - edges[k]);
       for (std::size_t i = 0; i < packing.centres.size(); ++i) {
-        const double apart = z - packing.centres[i].z, radius = packing.radius(i);
-        quadrature += 3.14159265358979 * std::max(0.0, radius * radius - apart * apart) / n / 64;
+        const double distance = z - packing.centres[i].z, radius = packing.radius(i);
+        quadrature +=
+            3.14159265358979 * std::max(0.0, radius * radius - distance * distance) / n / 64;
       }
     }
     CHECK(profile.values[k] == Approx(quadrature).epsilon(1e-4).margin(1e-6));
@@ -234,7 +236,9 @@ TEST_CASE("structure: the face of two spheres of other sizes is where their tang
   Packing packing{FullyPeriodicBox{10, 10, 10}, {{2, 5, 5}, {5, 5, 5}}};
   packing.sizes = std::make_shared<const Sizes>(std::vector<double>{2, 0.8});
   const VoronoiCells cells = voronoi_cells(packing);
-  const auto plane = [](double apart) { return (apart * apart + 1 - 0.16) / (2 * apart); };
+  const auto plane = [](double distance) {
+    return (distance * distance + 1 - 0.16) / (2 * distance);
+  };
   CHECK(cells.volumes[0] == Approx(100 * (plane(3) + plane(7))).epsilon(1e-12));
   CHECK(cells.volumes[0] + cells.volumes[1] == Approx(1000).epsilon(1e-12));
   CHECK(free_volumes(cells)[1] ==
@@ -272,16 +276,17 @@ TEST_CASE("structure: partial pairs are those of all pairs, and what is expected
   REQUIRE(all.size() == 3);
   std::array<std::array<double, 8>, 3> counts{}, expected{};
   for (std::size_t i = 0; i < packing.centres.size(); ++i) {
-    const Vec3 from = packing.centres[i];
-    if (from.z < 3 || from.z > 7) continue;
+    const Vec3 start = packing.centres[i];
+    if (start.z < 3 || start.z > 7) continue;
     for (std::size_t j = 0; j < packing.centres.size(); ++j) {
       if (j == i) continue;
       const std::size_t kinds = packing.sizes->kind(i) + packing.sizes->kind(j);
       const double contact = packing.radius(i) + packing.radius(j);
-      const double apart = std::sqrt(norm_squared(separation(boundary, from, packing.centres[j])));
-      const auto bin = static_cast<std::size_t>(apart / contact / 0.25);
+      const double distance =
+          std::sqrt(norm_squared(separation(boundary, start, packing.centres[j])));
+      const auto bin = static_cast<std::size_t>(distance / contact / 0.25);
       if (bin < 8) counts[kinds][bin] += 1;
-      const double h = packing.centres[j].z - from.z;
+      const double h = packing.centres[j].z - start.z;
       for (std::size_t k = 0; k < 8; ++k) {
         const auto disc = [&](double x) {
           return std::max(0.0, x * x * contact * contact - h * h) * std::numbers::pi / 64;

@@ -27,15 +27,15 @@ const Measurement& part(const std::vector<Measurement>& all, std::string_view na
   return *found;
 }
 
-const std::vector<double>& along(const Measurement& measurement, std::string_view name) {
+const std::vector<double>& values_of(const Measurement& measurement, std::string_view name) {
   const MeasuredQuantity* quantity = measurement.find(name);
   REQUIRE(quantity != nullptr);
   return quantity->values;
 }
 
 double single(const Measurement& measurement, std::string_view name) {
-  REQUIRE(along(measurement, name).size() == 1);
-  return along(measurement, name)[0];
+  REQUIRE(values_of(measurement, name).size() == 1);
+  return values_of(measurement, name)[0];
 }
 
 double sum(const std::vector<double>& values) {
@@ -44,12 +44,12 @@ double sum(const std::vector<double>& values) {
   return total;
 }
 
-/// Touching fcc in a fully periodic box of 5 cubic cells a side, all lengths times `by`.
-Packing pressed_fcc(double by) {
+/// Touching fcc in a fully periodic box of 5 cubic cells a side, all lengths times `scale`.
+Packing pressed_fcc(double scale) {
   Packing packing = fcc_points();
-  const double width = by * 5 * std::numbers::sqrt2;
+  const double width = scale * 5 * std::numbers::sqrt2;
   packing.container = FullyPeriodicBox{width, width, width};
-  for (Vec3& r : packing.centres) r = by * r;
+  for (Vec3& r : packing.centres) r = scale * r;
   return packing;
 }
 
@@ -100,8 +100,9 @@ double neighbours_by_all_pairs(const Packing& packing, double cut) {
 TEST_CASE("An fcc crystal pressed together has the structure of its lattice") {
   const double overlap = GENERATE(0, 1e-4, 1e-3, 1e-2);
   CAPTURE(overlap);
-  const double apart = 1 - overlap, volume = apart * apart * apart / std::numbers::sqrt2;
-  const std::vector<Measurement> all = measure(pressed_fcc(apart), without_floor(), points);
+  const double distance = 1 - overlap,
+               volume = distance * distance * distance / std::numbers::sqrt2;
+  const std::vector<Measurement> all = measure(pressed_fcc(distance), without_floor(), points);
 
   CHECK(single(part(all, "coordination"), "n_c") == 12);
   CHECK(single(part(all, "gaps"), "contacts") == 12);
@@ -113,32 +114,32 @@ TEST_CASE("An fcc crystal pressed together has the structure of its lattice") {
   CHECK(single(cells, "mean_local_fraction") == Approx(sphere_volume / volume).epsilon(1e-9));
   CHECK(single(cells, "inconsistent_cells") == 0);
   // A last bin ends at 0.76, beyond all that cells of hard spheres have.
-  CHECK(sum(along(cells, "local_fraction_density")) * 0.01 ==
+  CHECK(sum(values_of(cells, "local_fraction_density")) * 0.01 ==
         Approx(sphere_volume / volume < 0.76 ? 1 : 0).margin(1e-9));
   // Spheres count whole: their common volume counts twice.
   CHECK(single(part(all, "void_probability"), "phi") ==
         Approx(sphere_volume / volume).epsilon(1e-9));
-  const double tetrahedral = std::sqrt(1.5) * apart - 1;
-  const double octahedral = std::numbers::sqrt2 * apart - 1;
+  const double tetrahedral = std::sqrt(1.5) * distance - 1;
+  const double octahedral = std::numbers::sqrt2 * distance - 1;
   const Measurement& found = part(all, "pores");
   CHECK(single(found, "tetrahedral") == Approx(2.0 / 3).epsilon(1e-12));
   CHECK(single(found, "octahedral") == Approx(1.0 / 3).epsilon(1e-12));
   CHECK(single(found, "nu") ==
         Approx((2 * std::pow(tetrahedral, 3) + std::pow(octahedral, 3)) / 3).epsilon(1e-6));
   CHECK(single(part(all, "holes"), "unclassified") == 0);
-  CHECK(along(part(all, "holes"), "number_fraction")[0] == Approx(0.5).epsilon(1e-12));
+  CHECK(values_of(part(all, "holes"), "number_fraction")[0] == Approx(0.5).epsilon(1e-12));
 }
 
 TEST_CASE("Packing fractions count overlaps of two spheres twice") {
   // No point is in three of them: three centres are 0.549 from the middle between them.
-  constexpr double apart = 0.95;
-  const Packing packing = pressed_fcc(apart);
+  constexpr double distance = 0.95;
+  const Packing packing = pressed_fcc(distance);
   StructureSettings settings;
   settings.void_probability.emplace();
   const double counted =
       single(part(measure(packing, settings, points), "void_probability"), "phi");
-  const double volume = apart * apart * apart / std::numbers::sqrt2;
-  const double expected = counted - 6 * lens_volume(1 - apart) / volume;
+  const double volume = distance * distance * distance / std::numbers::sqrt2;
+  const double expected = counted - 6 * lens_volume(1 - distance) / volume;
 
   RandomStream random(stream_key(8, 0, 0, Purpose::start));
   const double width = width_x(packing.container);
@@ -161,11 +162,11 @@ TEST_CASE("Packing fractions count overlaps of two spheres twice") {
 TEST_CASE("Layers pressed into the floor are layers, and lose what is below it") {
   const double overlap = GENERATE(1e-4, 1e-3, 1e-2);
   CAPTURE(overlap);
-  const double apart = 1 - overlap;
+  const double distance = 1 - overlap;
   Packing packing = stacked_layers("ABCABC");
   const auto box = std::get<PeriodicBox>(packing.container);
-  packing.container = PeriodicBox{apart * box.width_x, apart * box.width_y};
-  for (Vec3& r : packing.centres) r = apart * r;
+  packing.container = PeriodicBox{distance * box.width_x, distance * box.width_y};
+  for (Vec3& r : packing.centres) r = distance * r;
   StructureSettings settings;
   settings.profile.emplace();
   settings.layers.emplace();
@@ -173,9 +174,9 @@ TEST_CASE("Layers pressed into the floor are layers, and lose what is below it")
   const std::vector<Measurement> all = measure(packing, settings, points);
   CHECK(single(part(all, "layers"), "grown_layers") == 6);
   const double n = static_cast<double>(packing.centres.size());
-  const double below = n / 6 * cap_volume(overlap / 2);
-  CHECK(sum(along(part(all, "profile"), "phi")) * 0.1 * footprint_area(packing.container) ==
-        Approx(n * sphere_volume - below).epsilon(1e-12));
+  const double cap_sum = n / 6 * cap_volume(overlap / 2);
+  CHECK(sum(values_of(part(all, "profile"), "phi")) * 0.1 * footprint_area(packing.container) ==
+        Approx(n * sphere_volume - cap_sum).epsilon(1e-12));
 }
 
 TEST_CASE("Every part measures a bed of soft grains between walls") {
@@ -199,11 +200,11 @@ TEST_CASE("Every part measures a bed of soft grains between walls") {
   const Measurement& cells = part(all, "voronoi");
   CHECK(std::abs(single(cells, "volume_excess")) < 1e-10);
   CHECK(single(cells, "inconsistent_cells") == 0);
-  double below = 0;
-  for (const Vec3& r : bed.centres) below += cap_volume(std::max(0.0, sphere_radius - r.z));
-  CHECK(below > 0);
-  CHECK(sum(along(part(all, "profile"), "phi")) * 0.1 * footprint_area(bed.container) ==
-        Approx(300 * sphere_volume - below).epsilon(1e-12));
+  double cap_sum = 0;
+  for (const Vec3& r : bed.centres) cap_sum += cap_volume(std::max(0.0, sphere_radius - r.z));
+  CHECK(cap_sum > 0);
+  CHECK(sum(values_of(part(all, "profile"), "phi")) * 0.1 * footprint_area(bed.container) ==
+        Approx(300 * sphere_volume - cap_sum).epsilon(1e-12));
 }
 
 TEST_CASE("Spheres are measured down to half a diameter apart, and refused below") {

@@ -16,7 +16,7 @@ struct CellAxis {
   int count = 1;
 
   /// Cells at least `least_side` wide, one at least, over [origin, origin + length).
-  static CellAxis over(double origin, double length, double period, double least_side) {
+  static CellAxis divide(double origin, double length, double period, double least_side) {
     CellAxis axis{.origin = origin, .period = period};
     axis.set_count(static_cast<int>(std::clamp(std::floor(length / least_side), 1.0, 1e9)), length);
     return axis;

@@ -43,10 +43,11 @@ class CellGrid {
   /// Calls visit(j) for every sphere in the cell of `r` and the cells around it.
   template <class Visit>
   void for_each_near(Vec3 r, Visit&& visit) const {
-    const std::array<double, 3> at = {r.x, r.y, r.z};
+    const std::array<double, 3> coordinates = {r.x, r.y, r.z};
     std::array<std::array<int, 3>, 3> line;
     std::array<int, 3> length;
-    for (int k = 0; k < 3; ++k) length[k] = neighbours(axes_[k].own_cell(at[k]), axes_[k], line[k]);
+    for (int k = 0; k < 3; ++k)
+      length[k] = neighbours(axes_[k].own_cell(coordinates[k]), axes_[k], line[k]);
     for_each_in(line, length, visit);
   }
 
@@ -56,12 +57,12 @@ class CellGrid {
   void for_each_within(Vec3 r, double reach, Visit&& visit) const {
     std::array<std::array<int, 3>, 3> line;
     std::array<int, 3> length;
-    const std::array<double, 3> at = {r.x, r.y, r.z};
+    const std::array<double, 3> coordinates = {r.x, r.y, r.z};
     for (int k = 0; k < 3; ++k) {
       const CellAxis& axis = axes_[k];
-      const int home = axis.own_cell(at[k]);
-      const bool inside =
-          (at[k] - reach) * axis.per_length >= home && (at[k] + reach) * axis.per_length < home + 1;
+      const int home = axis.own_cell(coordinates[k]);
+      const bool inside = (coordinates[k] - reach) * axis.per_length >= home &&
+                          (coordinates[k] + reach) * axis.per_length < home + 1;
       line[k][0] = home;
       length[k] = inside ? 1 : neighbours(home, axis, line[k]);
     }
@@ -97,10 +98,10 @@ class CellGrid {
     int first, length, count;
     int cell(int k) const { return first + k < count ? first + k : first + k - count; }
   };
-  static CellSpan span(const CellAxis& axis, double at, double reach) {
+  static CellSpan span(const CellAxis& axis, double coordinate, double reach) {
     const double cells = std::min(std::ceil(reach * axis.per_length), 1e9);
     const int beyond = std::min(static_cast<int>(cells), axis.count);
-    const int home = axis.own_cell(at);
+    const int home = axis.own_cell(coordinate);
     if (axis.period == 0) {
       const int low = std::max(0, home - beyond), high = std::min(axis.count - 1, home + beyond);
       return {low, high - low + 1, axis.count};
@@ -137,9 +138,9 @@ class CellGrid {
     const Vec3 periods = boundary.periods();
     double side = cutoff;
     do {
-      axes_ = {CellAxis::over(0, boundary.width_x, periods.x, side),
-               CellAxis::over(0, boundary.width_y, periods.y, side),
-               CellAxis::over(0, height, periods.z, side)};
+      axes_ = {CellAxis::divide(0, boundary.width_x, periods.x, side),
+               CellAxis::divide(0, boundary.width_y, periods.y, side),
+               CellAxis::divide(0, height, periods.z, side)};
       double cells = 1;
       for (CellAxis& axis : axes_) {
         if (axis.period != 0 && axis.count < 3) axis.set_count(1, axis.period);

@@ -16,9 +16,9 @@ SphereCells::SphereCells(const Container& container, std::uint32_t n_spheres, do
   double side = least_side;
   while (cells(side) > most_cells(n_spheres)) side *= 1.5;
   const Vec3 periods = boundary.periods();
-  x_ = CellAxis::over(0, boundary.width_x, periods.x, side);
-  y_ = CellAxis::over(0, boundary.width_y, periods.y, side);
-  z_ = CellAxis::over(0, open_top_ ? side : height, periods.z, side);
+  x_ = CellAxis::divide(0, boundary.width_x, periods.x, side);
+  y_ = CellAxis::divide(0, boundary.width_y, periods.y, side);
+  z_ = CellAxis::divide(0, open_top_ ? side : height, periods.z, side);
   heads_.assign(static_cast<std::size_t>(x_.count) * y_.count * z_.count, -1);
 }
 
@@ -51,10 +51,10 @@ std::uint32_t SphereCells::insert(Vec3 centre) {
 
 void SphereCells::move(std::uint32_t sphere, Vec3 centre) {
   make_room(centre.z);
-  const std::size_t from = cell_of(centres_[sphere]);
+  const std::size_t old_cell = cell_of(centres_[sphere]);
   centres_[sphere] = centre;
-  if (cell_of(centre) == from) return;
-  std::int32_t* place = &heads_[from];
+  if (cell_of(centre) == old_cell) return;
+  std::int32_t* place = &heads_[old_cell];
   while (*place != static_cast<std::int32_t>(sphere)) {
     place = &next_[static_cast<std::size_t>(*place)];
   }

@@ -41,8 +41,8 @@ class SphereCells {
         for (long i = x.first; i <= x.last; ++i) {
           const CellAxis::Image cell = x_.image(i);
           const Vec3 shift = {cell.shift, row.shift, layer.shift};
-          const long at = (layer.cell * y_.count + row.cell) * x_.count + cell.cell;
-          for (std::int32_t s = heads_[static_cast<std::size_t>(at)]; s >= 0;
+          const long index = (layer.cell * y_.count + row.cell) * x_.count + cell.cell;
+          for (std::int32_t s = heads_[static_cast<std::size_t>(index)]; s >= 0;
                s = next_[static_cast<std::size_t>(s)]) {
             const auto sphere = static_cast<std::uint32_t>(s);
             if (visit(sphere, centres_[sphere] + shift)) return true;

@@ -92,9 +92,9 @@ template <class N, class AnyMeeting>
 JOSTLE_INLINE Projected<N> projected(const Vector3<N>& old, const N& inverse2,
                                      const AnyMeeting& meeting, double time_step) {
   const N twist = meeting.twist(time_step);
-  const N out = dot(old, meeting.normal);  // component out of the plane
-  const N twist2 = twist * twist, tilt2 = out * out * inverse2;
-  return {old + scaled(twist, cross(meeting.normal, old)) - scaled(out, meeting.normal),
+  const N normal_part = dot(old, meeting.normal);  // component out of the plane
+  const N twist2 = twist * twist, tilt2 = normal_part * normal_part * inverse2;
+  return {old + scaled(twist, cross(meeting.normal, old)) - scaled(normal_part, meeting.normal),
           lesser(twist2 - tilt2 * (1.0 + twist2), N(1.0))};
 }
 
@@ -157,15 +157,15 @@ struct WaltonBraunLaw {
   JOSTLE_INLINE ContactAction<N> operator()(const AnyMeeting& meeting, const LawConstants& law) {
     const N zero{};
     const auto touching = meeting.overlap > zero;
-    const N before = greatest;
-    greatest = greater(before, meeting.overlap);
+    const N old_greatest = greatest;
+    greatest = greater(old_greatest, meeting.overlap);
     const N unloading = law.unloading * (meeting.overlap - law.latched * greatest);
     N normal_force = lesser(law.stiffness * meeting.overlap, greater(unloading, zero));
     normal_force = select(touching, normal_force, zero);
     // Latched energy is lost when the contact opens, which erases its history.
     ContactAction<N> action;
     action.dissipated_normally =
-        select(touching, zero, (0.5 * law.stiffness * law.latched) * before * before);
+        select(touching, zero, (0.5 * law.stiffness * law.latched) * old_greatest * old_greatest);
     greatest = select(touching, greatest, zero);
     action.force = scaled(normal_force, meeting.normal);
     action.torque = {zero, zero, zero};
@@ -184,7 +184,7 @@ struct WaltonBraunLaw {
   template <class AnyMeeting>
   JOSTLE_INLINE void shear(const AnyMeeting& meeting, const LawConstants& law,
                            const N& normal_force, ContactAction<N>& action) {
-    const N zero{}, one = zero + 1.0;
+    const N zero{}, unity = zero + 1.0;
     const auto touching = meeting.overlap > zero;
     const auto [start, unit, length] = turned(tangential, meeting, law.time_step);
     const N start2 = length * length;
@@ -197,9 +197,10 @@ struct WaltonBraunLaw {
     // loading: 1 while T grows, -1 while it shrinks. t* is t at each reversal: as a share of mu N
     // it follows N.
     N loading = 1.0 - 2.0 * shrinking;
-    const N loading_now = select(growth > zero, one, select(growth < zero, zero - one, loading));
-    const N mobilized = length / select(limit > zero, limit, one);
-    const N mobilized_now = lesser(mobilized, one);
+    const N loading_now =
+        select(growth > zero, unity, select(growth < zero, zero - unity, loading));
+    const N mobilized = length / select(limit > zero, limit, unity);
+    const N mobilized_now = lesser(mobilized, unity);
     N next = mobilized_now;
     const auto grows_again = loading_now > loading;
     if (any_of(grows_again)) {
@@ -215,8 +216,8 @@ struct WaltonBraunLaw {
 
     const N numerator = 1.0 - loading * mobilized;
     const N denominator = 1.0 - loading * reversal;
-    const N quotient = numerator / select(denominator > zero, denominator, one);
-    const N fraction = select(denominator > zero, greater(lesser(quotient, one), zero), zero);
+    const N quotient = numerator / select(denominator > zero, denominator, unity);
+    const N fraction = select(denominator > zero, greater(lesser(quotient, unity), zero), zero);
     const N least = zero + 1e-30;
     const N softened = law.tangential * cube_root_of(greater(fraction, least));  // K_T
     // K_T along the force, K0 across it.
@@ -229,8 +230,8 @@ struct WaltonBraunLaw {
     const N limit2 = limit * limit;
     const auto slides = end2 > limit2;
     if (any_of(slides)) {
-      const N cut = limit / square_root(select(slides, end2, one));
-      end = scaled(select(slides, cut, one), end);
+      const N cut = limit / square_root(select(slides, end2, unity));
+      end = scaled(select(slides, cut, unity), end);
       end2 = lesser(end2, limit2);
     }
 
@@ -295,13 +296,13 @@ struct LinearLaw {
   template <class AnyMeeting>
   JOSTLE_INLINE void shear(const AnyMeeting& meeting, const LawConstants& law, const N& speed,
                            const N& normal_force, ContactAction<N>& action) {
-    const N zero{}, one = zero + 1.0;
+    const N zero{}, unity = zero + 1.0;
     const auto touching = meeting.overlap > zero;
     const N spring2 = dot(spring, spring);
     const N held = (0.5 / law.tangential) * spring2;
     const Vector3<N> velocity = sliding_velocity(meeting, speed);
     const N stretch = zero + law.tangential * law.time_step;
-    const N inverse2 = 1.0 / select(spring2 > zero + least_force * least_force, spring2, one);
+    const N inverse2 = 1.0 / select(spring2 > zero + least_force * least_force, spring2, unity);
     const auto [plane, change] = projected(spring, inverse2, meeting, law.time_step);
     const Vector3<N> start = scaled(inverse_root_by_series(change), plane);  // with its old length
     const Vector3<N> trial = start + scaled(stretch, velocity);
@@ -314,8 +315,8 @@ struct LinearLaw {
     const auto slides = size2 > limit * limit;
     Vector3<N> acting = resisting;
     if (any_of(slides)) {
-      const N cut = limit / square_root(select(slides, size2, one));
-      acting = scaled(select(slides, cut, one), resisting);
+      const N cut = limit / square_root(select(slides, size2, unity));
+      acting = scaled(select(slides, cut, unity), resisting);
     }
     const Vector3<N> kept = acting - scaled(ahead, velocity);
     // Work on the contact in this step, less what its spring then holds.

@@ -14,11 +14,11 @@ namespace {
 using Half = double __attribute__((vector_size(32)));  // half of a row
 using HalfBits = std::int64_t __attribute__((vector_size(32)));
 
-[[gnu::always_inline]] inline Half& half_at(double* from) {
-  return *reinterpret_cast<Half*>(from);
+[[gnu::always_inline]] inline Half& half_at(double* source) {
+  return *reinterpret_cast<Half*>(source);
 }
-[[gnu::always_inline]] inline const Half& half_at(const double* from) {
-  return *reinterpret_cast<const Half*>(from);
+[[gnu::always_inline]] inline const Half& half_at(const double* source) {
+  return *reinterpret_cast<const Half*>(source);
 }
 
 // The eight numbers of a row. (By its first member: of the row itself gcc 12 makes longer code.)
@@ -46,20 +46,20 @@ constexpr int friction_place = 0, normal_place = 1, torque_z_place = 2;
 // Loads numbers of a law's history, and stores them.
 template <class Law>
 [[gnu::always_inline]] inline void read_history(Law& law, const ContactArrays& contacts,
-                                                std::size_t at) {
+                                                std::size_t index) {
   law.each_of_history([&](int k, Wide& value) __attribute__((always_inline)) {
-    value = Wide::at(contacts.history[k] + at);
+    value = Wide::load(contacts.history[k] + index);
   });
 }
 template <class Law>
 [[gnu::always_inline]] inline void write_history(Law& law, const ContactArrays& contacts,
-                                                 std::size_t at) {
+                                                 std::size_t index) {
   law.each_of_history([&](int k, Wide& value) __attribute__((always_inline)) {
-    value.store(contacts.history[k] + at);
+    value.store(contacts.history[k] + index);
   });
 }
 
-[[gnu::always_inline]] inline void write_action(const ContactArrays& contacts, std::size_t at,
+[[gnu::always_inline]] inline void write_action(const ContactArrays& contacts, std::size_t index,
                                                 const ContactAction<Wide>& action, double share) {
   const Wide friction = share * action.dissipated_by_friction;
   const Wide normal = share * action.dissipated_normally;
@@ -68,7 +68,7 @@ template <class Law>
                   action.torque.y.part[p], friction.part[p],       normal.part[p],
                   action.torque.z.part[p], action.torque.x.part[p]};  // order of an ActionRow
     columns_to_rows(m);
-    double* rows = numbers_of(contacts.action[at + p * n_lanes]);
+    double* rows = numbers_of(contacts.action[index + p * n_lanes]);
     for (std::uint32_t k = 0; k < 8; ++k) lanes_at(rows + k * n_lanes) = m[k];
   }
 }
@@ -95,14 +95,15 @@ struct BlockData {
 
 template <bool spin>
 [[gnu::always_inline]] inline BlockData pair_data(const SphereArrays& spheres,
-                                                  const ContactArrays& contacts, std::size_t at) {
+                                                  const ContactArrays& contacts,
+                                                  std::size_t index) {
   constexpr std::uint32_t per_row = 8 / n_lanes;  // vectors
-  BlockData out;
-  for (std::uint32_t p = 0; p < n_parts; ++p, at += n_lanes) {
+  BlockData block;
+  for (std::uint32_t p = 0; p < n_parts; ++p, index += n_lanes) {
     Lanes m[8];
     for (std::uint32_t lane = 0; lane < n_lanes; ++lane) {
-      const double* a = numbers_of(spheres.rows[contacts.first[at + lane]]);
-      const double* b = numbers_of(spheres.rows[contacts.second[at + lane]]);
+      const double* a = numbers_of(spheres.rows[contacts.first[index + lane]]);
+      const double* b = numbers_of(spheres.rows[contacts.second[index + lane]]);
       for (std::uint32_t k = 0; k < per_row; ++k) {
         LaneBits minus{};  // sign of the added rows: spins
         for (std::uint32_t l = 0; l < n_lanes; ++l)
@@ -111,56 +112,57 @@ template <bool spin>
             lanes_at(a + k * n_lanes) - (Lanes)((LaneBits)lanes_at(b + k * n_lanes) ^ minus);
       }
       if constexpr (spin)
-        out.spin.z.part[p][lane] =
-            spheres.spin_z[contacts.first[at + lane]] + spheres.spin_z[contacts.second[at + lane]];
+        block.spin.z.part[p][lane] = spheres.spin_z[contacts.first[index + lane]] +
+                                     spheres.spin_z[contacts.second[index + lane]];
     }
-    set_components(out, p, m);
+    set_components(block, p, m);
   }
-  return out;
+  return block;
 }
 
 template <bool spin>
 [[gnu::always_inline]] inline BlockData sphere_data(const SphereArrays& spheres,
-                                                    const ContactArrays& contacts, std::size_t at) {
+                                                    const ContactArrays& contacts,
+                                                    std::size_t index) {
   constexpr std::uint32_t per_row = 8 / n_lanes;
-  BlockData out;
-  for (std::uint32_t p = 0; p < n_parts; ++p, at += n_lanes) {
+  BlockData block;
+  for (std::uint32_t p = 0; p < n_parts; ++p, index += n_lanes) {
     Lanes m[8];
     for (std::uint32_t lane = 0; lane < n_lanes; ++lane) {
-      const double* a = numbers_of(spheres.rows[contacts.first[at + lane]]);
+      const double* a = numbers_of(spheres.rows[contacts.first[index + lane]]);
       for (std::uint32_t k = 0; k < per_row; ++k) m[lane * per_row + k] = lanes_at(a + k * n_lanes);
-      if constexpr (spin) out.spin.z.part[p][lane] = spheres.spin_z[contacts.first[at + lane]];
+      if constexpr (spin) block.spin.z.part[p][lane] = spheres.spin_z[contacts.first[index + lane]];
     }
-    set_components(out, p, m);
+    set_components(block, p, m);
   }
-  return out;
+  return block;
 }
 
 // Writes the actions of a block of contacts by the law. Returns false if the block is idle: no
 // contact touches or remembers.
 template <class Law, class AnyMeeting>
 [[gnu::always_inline]] inline bool apply_law(const AnyMeeting& meeting,
-                                             const ContactArrays& contacts, std::size_t at,
+                                             const ContactArrays& contacts, std::size_t index,
                                              const LawConstants& constants, double share) {
   Law law;
-  read_history(law, contacts, at);
+  read_history(law, contacts, index);
   if (!law.is_at_work(meeting)) {
-    write_action(contacts, at, {}, share);
+    write_action(contacts, index, {}, share);
     return false;
   }
   const ContactAction<Wide> action = law(meeting, constants);
-  write_history(law, contacts, at);
-  write_action(contacts, at, action, share);
+  write_history(law, contacts, index);
+  write_action(contacts, index, action, share);
   return true;
 }
 
 // Returns true if any of a block's spheres may touch: in half the time of their meeting.
 template <bool several>
 [[gnu::always_inline]] inline bool may_touch(const SphereArrays& spheres,
-                                             const ContactArrays& contacts, std::size_t at) {
+                                             const ContactArrays& contacts, std::size_t index) {
   constexpr double reach2 = 1 + 1e-9;  // beyond the rounding of either way to compute distances
   HalfBits near{};
-  for (std::size_t k = at; k < at + wide_size; k += 4) {
+  for (std::size_t k = index; k < index + wide_size; k += 4) {
     Half m[4];
     for (std::size_t l = 0; l < 4; ++l)
       m[l] = half_at(numbers_of(spheres.rows[contacts.first[k + l]])) -
@@ -172,12 +174,12 @@ template <bool several>
     const Half x = __builtin_shufflevector(a, b, 0, 1, 4, 5) - half_at(contacts.shift[0] + k);
     const Half y = __builtin_shufflevector(c, d, 0, 1, 4, 5) - half_at(contacts.shift[1] + k);
     const Half z = __builtin_shufflevector(a, b, 2, 3, 6, 7);
-    Half within = Half{} + reach2;
+    Half cutoff2 = Half{} + reach2;
     if constexpr (several) {
       const Half touching = half_at(contacts.size[touching_distance] + k);
-      within = reach2 * (touching * touching);
+      cutoff2 = reach2 * (touching * touching);
     }
-    near |= (HalfBits)(x * x + y * y + z * z < within);
+    near |= (HalfBits)(x * x + y * y + z * z < cutoff2);
   }
   return (near[0] | near[1] | near[2] | near[3]) != 0;
 }
@@ -189,17 +191,18 @@ template <bool several>
       *contacts.deepest = part[k] > *contacts.deepest ? part[k] : *contacts.deepest;
 }
 
-[[gnu::always_inline]] inline void set_idle(const ContactArrays& contacts, std::size_t at,
+[[gnu::always_inline]] inline void set_idle(const ContactArrays& contacts, std::size_t index,
                                             bool idle) {
-  for (std::size_t k = 0; k < wide_size; k += smallest_block) contacts.idle[at + k] = idle ? 1 : 0;
+  for (std::size_t k = 0; k < wide_size; k += smallest_block)
+    contacts.idle[index + k] = idle ? 1 : 0;
 }
 
 // A pass of its own: beside a law's many numbers its own would be put aside and fetched again.
 template <bool several>
 [[gnu::noinline]] void find_idle(const ContactArrays& contacts, const SphereArrays& spheres) {
-  for (std::size_t at = 0; at < contacts.n; at += wide_size) {
-    if (contacts.idle[at] != 0 && may_touch<several>(spheres, contacts, at))
-      set_idle(contacts, at, false);
+  for (std::size_t index = 0; index < contacts.n; index += wide_size) {
+    if (contacts.idle[index] != 0 && may_touch<several>(spheres, contacts, index))
+      set_idle(contacts, index, false);
   }
 }
 
@@ -209,9 +212,9 @@ using MeetingOf = std::conditional_t<several, SizedMeeting<Wide>, Meeting<Wide>>
 // Data of the sizes of the spheres in a block of contacts.
 template <class Law>
 [[gnu::always_inline]] inline void read_sizes(SizedMeeting<Wide>& meeting,
-                                              const ContactArrays& contacts, std::size_t at) {
-  meeting.per_diameter = Wide::at(contacts.size[per_diameter] + at);
-  if constexpr (Law::has_dashpots) meeting.mass_root = Wide::at(contacts.size[mass_root] + at);
+                                              const ContactArrays& contacts, std::size_t index) {
+  meeting.per_diameter = Wide::load(contacts.size[per_diameter] + index);
+  if constexpr (Law::has_dashpots) meeting.mass_root = Wide::load(contacts.size[mass_root] + index);
 }
 
 template <template <class, bool> class LawOf, bool friction, bool several>
@@ -220,31 +223,31 @@ void pairs(const ContactArrays& contacts, const SphereArrays& spheres,
   using Law = LawOf<Wide, friction>;
   find_idle<several>(contacts, spheres);
   Wide deepest = *contacts.deepest;
-  for (std::size_t at = 0; at < contacts.n; at += wide_size) {
-    if (contacts.idle[at] != 0) continue;
-    const BlockData block = pair_data<Law::has_spin>(spheres, contacts, at);
-    const Vector3<Wide> between = {block.position.x - Wide::at(contacts.shift[0] + at),
-                                   block.position.y - Wide::at(contacts.shift[1] + at),
-                                   block.position.z};
-    const Wide distance = square_root(dot(between, between));
+  for (std::size_t index = 0; index < contacts.n; index += wide_size) {
+    if (contacts.idle[index] != 0) continue;
+    const BlockData block = pair_data<Law::has_spin>(spheres, contacts, index);
+    const Vector3<Wide> branch = {block.position.x - Wide::load(contacts.shift[0] + index),
+                                  block.position.y - Wide::load(contacts.shift[1] + index),
+                                  block.position.z};
+    const Wide distance = square_root(dot(branch, branch));
     MeetingOf<several> meeting;
-    meeting.normal = scaled(1.0 / distance, between);
+    meeting.normal = scaled(1.0 / distance, branch);
     meeting.velocity = block.velocity;
     if constexpr (Law::has_spin) meeting.spin = block.spin;
     if constexpr (several) {
-      read_sizes<Law>(meeting, contacts, at);
-      meeting.overlap = Wide::at(contacts.size[touching_distance] + at) - distance;
+      read_sizes<Law>(meeting, contacts, index);
+      meeting.overlap = Wide::load(contacts.size[touching_distance] + index) - distance;
       if constexpr (Law::has_spin)
-        meeting.arm = Law::arm_is_radius ? meeting.normal : scaled(meeting.per_diameter, between);
-      deepest =
-          greater(deepest, meeting.overlap * Wide::at(contacts.size[per_smaller_diameter] + at));
+        meeting.arm = Law::arm_is_radius ? meeting.normal : scaled(meeting.per_diameter, branch);
+      deepest = greater(deepest,
+                        meeting.overlap * Wide::load(contacts.size[per_smaller_diameter] + index));
     } else {
       meeting.overlap = 1.0 - distance;
       if constexpr (Law::has_spin)
-        meeting.arm = scaled(Wide(0.5), Law::arm_is_radius ? meeting.normal : between);
+        meeting.arm = scaled(Wide(0.5), Law::arm_is_radius ? meeting.normal : branch);
       deepest = greater(deepest, meeting.overlap);
     }
-    set_idle(contacts, at, !apply_law<Law>(meeting, contacts, at, constants, 0.5));
+    set_idle(contacts, index, !apply_law<Law>(meeting, contacts, index, constants, 0.5));
   }
   keep_deepest(contacts, deepest);
 }
@@ -254,15 +257,15 @@ void sides(const ContactArrays& contacts, const SphereArrays& spheres,
            const LawConstants& constants) {
   using Law = LawOf<Wide, friction>;
   Wide deepest = *contacts.deepest;
-  for (std::size_t at = 0; at < contacts.n; at += wide_size) {
-    const BlockData block = sphere_data<Law::has_spin>(spheres, contacts, at);
-    const Wide distance = Wide::at(contacts.side[3] + at);
+  for (std::size_t index = 0; index < contacts.n; index += wide_size) {
+    const BlockData block = sphere_data<Law::has_spin>(spheres, contacts, index);
+    const Wide distance = Wide::load(contacts.side[3] + index);
     MeetingOf<several> meeting;
-    meeting.normal = {Wide::at(contacts.side[0] + at), Wide::at(contacts.side[1] + at),
-                      Wide::at(contacts.side[2] + at)};
+    meeting.normal = {Wide::load(contacts.side[0] + index), Wide::load(contacts.side[1] + index),
+                      Wide::load(contacts.side[2] + index)};
     if constexpr (several) {
-      read_sizes<Law>(meeting, contacts, at);
-      meeting.overlap = Wide::at(contacts.size[touching_distance] + at) - distance;
+      read_sizes<Law>(meeting, contacts, index);
+      meeting.overlap = Wide::load(contacts.size[touching_distance] + index) - distance;
     } else {
       meeting.overlap = 0.5 - distance;
     }
@@ -283,7 +286,7 @@ void sides(const ContactArrays& contacts, const SphereArrays& spheres,
     } else {
       deepest = greater(deepest, meeting.overlap);
     }
-    apply_law<Law>(meeting, contacts, at, constants, 1.0);
+    apply_law<Law>(meeting, contacts, index, constants, 1.0);
   }
   keep_deepest(contacts, deepest);
 }

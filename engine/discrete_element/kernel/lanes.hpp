@@ -10,11 +10,11 @@
 // (JOSTLE_KERNELS).
 namespace jostle::inline engine::JOSTLE_KERNELS {
 
-[[gnu::always_inline]] inline Lanes lanes_at(const double* from) {
-  return *reinterpret_cast<const Lanes*>(from);
+[[gnu::always_inline]] inline Lanes lanes_at(const double* source) {
+  return *reinterpret_cast<const Lanes*>(source);
 }
-[[gnu::always_inline]] inline Lanes& lanes_at(double* from) {
-  return *reinterpret_cast<Lanes*>(from);
+[[gnu::always_inline]] inline Lanes& lanes_at(double* source) {
+  return *reinterpret_cast<Lanes*>(source);
 }
 
 #define JOSTLE_INLINE [[gnu::always_inline]] inline
@@ -32,15 +32,15 @@ struct Wide {
 
   JOSTLE_INLINE Wide() : part{} {}
   JOSTLE_INLINE Wide(double value) {
-    for (Lanes& one : part) one = Lanes{} + value;
+    for (Lanes& lanes : part) lanes = Lanes{} + value;
   }
-  JOSTLE_INLINE static Wide at(const double* from) {
+  JOSTLE_INLINE static Wide load(const double* source) {
     Wide wide;
-    for (std::uint32_t p = 0; p < n_parts; ++p) wide.part[p] = lanes_at(from + p * n_lanes);
+    for (std::uint32_t p = 0; p < n_parts; ++p) wide.part[p] = lanes_at(source + p * n_lanes);
     return wide;
   }
-  JOSTLE_INLINE void store(double* to) const {
-    for (std::uint32_t p = 0; p < n_parts; ++p) lanes_at(to + p * n_lanes) = part[p];
+  JOSTLE_INLINE void store(double* destination) const {
+    for (std::uint32_t p = 0; p < n_parts; ++p) lanes_at(destination + p * n_lanes) = part[p];
   }
 };
 
@@ -80,15 +80,15 @@ JOSTLE_INLINE bool any_of(const WideMask& mask) {
 }
 
 JOSTLE_INLINE Wide square_root(Wide x) {
-  for (Lanes& one : x.part) one = square_roots(one);
+  for (Lanes& lanes : x.part) lanes = square_roots(lanes);
   return x;
 }
 
 // Like the function for one number.
 JOSTLE_INLINE Wide inverse_cube_root_guess(Wide x) {
-  for (Lanes& one : x.part) {
-    const LaneBits high = (LaneBits)one >> 32;
-    one = (Lanes)((inverse_cube_root_bits - ((high * 0x55555556) >> 32)) << 32);
+  for (Lanes& lanes : x.part) {
+    const LaneBits high = (LaneBits)lanes >> 32;
+    lanes = (Lanes)((inverse_cube_root_bits - ((high * 0x55555556) >> 32)) << 32);
   }
   return x;
 }

@@ -26,17 +26,17 @@ struct alignas(64) BlockerCache {
   /// How many of the first neighbours have a lane.
   static constexpr std::uint32_t shown() { return size; }
   template <class Box>
-  [[gnu::always_inline]] void see_faces(const PackedBox<Box>& box, const PackedCentre& from,
+  [[gnu::always_inline]] void see_faces(const PackedBox<Box>& box, const PackedCentre& start,
                                         double) {
-    room = box.room(from);
+    room = box.room(start);
   }
   template <class Box>
-  [[gnu::always_inline]] void see(const PackedBox<Box>& box, const PackedCentre& from,
-                                  const PackedCentre& to, std::uint32_t lane, double) {
-    const Pair lateral = box.lateral(to.xy - from.xy);
+  [[gnu::always_inline]] void see(const PackedBox<Box>& box, const PackedCentre& start,
+                                  const PackedCentre& end, std::uint32_t lane, double) {
+    const Pair lateral = box.lateral(end.xy - start.xy);
     x[lane] = static_cast<float>(lateral[0]);
     y[lane] = static_cast<float>(lateral[1]);
-    z[lane] = static_cast<float>(box.vertical(to.z - from.z));
+    z[lane] = static_cast<float>(box.vertical(end.z - start.z));
   }
 };
 
@@ -56,18 +56,19 @@ struct alignas(64) SizedBlockerCache {
   /// `longest`: no step is longer.
   template <class Box>
   [[gnu::always_inline]] void see_faces(const PackedBox<Box, SeveralSizes>& box,
-                                        const PackedCentre& from, double longest) {
-    const FaceAhead face = box.nearest_face(from);
+                                        const PackedCentre& start, double longest) {
+    const FaceAhead face = box.nearest_face(start);
     if (!(face.room < longest)) return;
     const Vec3 twice = (2 * flat) * face.normal;
     set(size - 1, twice, 2 * flat * (face.room + margin * (std::max(face.room, 0.0) + longest)));
   }
   template <class Box>
-  [[gnu::always_inline]] void see(const PackedBox<Box, SeveralSizes>& box, const PackedCentre& from,
-                                  const PackedCentre& to, std::uint32_t lane, double longest) {
-    const Pair lateral = box.lateral(to.xy - from.xy);
-    const Vec3 b{lateral[0], lateral[1], box.vertical(to.z - from.z)};
-    const double squared = norm_squared(b), touching = SeveralSizes::touching_squared(from, to);
+  [[gnu::always_inline]] void see(const PackedBox<Box, SeveralSizes>& box,
+                                  const PackedCentre& start, const PackedCentre& end,
+                                  std::uint32_t lane, double longest) {
+    const Pair lateral = box.lateral(end.xy - start.xy);
+    const Vec3 b{lateral[0], lateral[1], box.vertical(end.z - start.z)};
+    const double squared = norm_squared(b), touching = SeveralSizes::touching_squared(start, end);
     set(lane, 2.0 * b, squared - touching + 2 * margin * (squared + longest * longest));
   }
 
@@ -144,10 +145,10 @@ class BlockerCaches {
     const Index* const row = lists.row(i);
     for (Index m = 1; m <= row[0]; ++m) {
       const Index j = row[m];
-      const Index* const other = lists.row(j);
-      const Index n = std::min(other[0], caches_[j].shown());
+      const Index* const second_row = lists.row(j);
+      const Index n = std::min(second_row[0], caches_[j].shown());
       for (Index lane = 0; lane < n; ++lane) {
-        if (other[1 + lane] == i) caches_[j].see(box, centres[j], centres[i], lane, longest_);
+        if (second_row[1 + lane] == i) caches_[j].see(box, centres[j], centres[i], lane, longest_);
       }
     }
   }

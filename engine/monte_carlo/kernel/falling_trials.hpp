@@ -24,7 +24,7 @@ class FallingTrials {
   }
 
   /// How many come before trial t of the batch.
-  std::uint32_t before(std::uint32_t t) const {
+  std::uint32_t count_before(std::uint32_t t) const {
     const auto end = trials_.begin() + count_;
     return static_cast<std::uint32_t>(std::lower_bound(trials_.begin(), end, t) - trials_.begin());
   }

@@ -17,8 +17,8 @@ Kernels kernels_for(InstructionSet set) {
       {InstructionSet::avx512, avx512::proposal_kernels, avx512::rejection_free_kernels},
 #endif
   };
-  for (const Entry& one : entries) {
-    if (one.set == set) return {one.proposals(), one.rejection_free()};
+  for (const Entry& entry : entries) {
+    if (entry.set == set) return {entry.proposals(), entry.rejection_free()};
   }
   throw_not_compiled_in(set);
 }

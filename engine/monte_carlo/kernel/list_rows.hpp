@@ -113,9 +113,9 @@ class OffsetRows {
 
   bool move_to_end(Index i, std::size_t n_spheres) {
     if (entries_.size() > most_entries_) return false;
-    const std::size_t from = offsets_[i], length = rooms_[i];
+    const std::size_t first = offsets_[i], length = rooms_[i];
     append(i, n_spheres);
-    std::copy_n(entries_.begin() + static_cast<std::ptrdiff_t>(from), length,
+    std::copy_n(entries_.begin() + static_cast<std::ptrdiff_t>(first), length,
                 entries_.begin() + static_cast<std::ptrdiff_t>(offsets_[i]));
     return true;
   }

@@ -24,27 +24,28 @@ struct TrialRange {
 
 /// The functions of a move that the loop calls. `step` is MoveState::step.
 template <class Policy>
-concept MovePolicy = requires(Policy& move, const Policy& same, const ProposalKernels& kernels,
-                              const BatchOrigin& origin, ProposalBatch& batch, MoveState& state,
-                              const TrialCounts& counts, double step, std::uint32_t t) {
+concept MovePolicy = requires(Policy& move, const Policy& constant_move,
+                              const ProposalKernels& kernels, const BatchOrigin& origin,
+                              ProposalBatch& batch, MoveState& state, const TrialCounts& counts,
+                              double step, std::uint32_t t) {
   /// True if floor, sides and neighbours alone decide: then blocker caches serve.
   { Policy::geometry_decides } -> std::convertible_to<bool>;
-  { same.max_step() } -> std::same_as<double>;
+  { constant_move.max_step() } -> std::same_as<double>;
   move.propose(kernels, origin, batch);
   /// Diameters a unit of the batch's displacements.
-  { same.unit(step) } -> std::same_as<double>;
-  { same.reach(step) } -> std::same_as<Reach>;
+  { constant_move.unit(step) } -> std::same_as<double>;
+  { constant_move.reach(step) } -> std::same_as<Reach>;
   /// Marks the trials t .. of the batch that are tested; the others rise, and are rejected.
-  { same.looked_at(t, t) } -> std::same_as<TrialRange>;
-  { same.trial(t) } -> std::same_as<std::uint32_t>;
+  { constant_move.looked_at(t, t) } -> std::same_as<TrialRange>;
+  { constant_move.trial(t) } -> std::same_as<std::uint32_t>;
   /// True if a displacement that is looked at rises, and may pass or not; dz of the batch.
-  { same.rises(step) } -> std::same_as<bool>;
+  { constant_move.rises(step) } -> std::same_as<bool>;
   /// True if it accepts the rise; trial number, m g dz in units of m g d.
-  { same.accepts_rise(std::uint64_t{}, step) } -> std::same_as<bool>;
+  { constant_move.accepts_rise(std::uint64_t{}, step) } -> std::same_as<bool>;
   /// The step through a tap: what it begins with, and how it adapts (true: it changed).
-  same.begin_tap(state);
-  { same.until_adaptation(state) } -> std::same_as<std::uint64_t>;
-  { same.adapt(state, counts) } -> std::same_as<bool>;
+  constant_move.begin_tap(state);
+  { constant_move.until_adaptation(state) } -> std::same_as<std::uint64_t>;
+  { constant_move.adapt(state, counts) } -> std::same_as<bool>;
 };
 
 /// Where every trial is looked at and geometry alone decides.
@@ -134,7 +135,7 @@ class ZeroTemperature : public CubicStep {
   }
   static Reach reach(double step) { return {CubicStep::reach(step).longest, -0.5 * step}; }
   TrialRange looked_at(std::uint32_t begin, std::uint32_t end) const {
-    return {falling_.before(begin), falling_.before(end)};
+    return {falling_.count_before(begin), falling_.count_before(end)};
   }
   std::uint32_t trial(std::uint32_t k) const { return falling_[k]; }
   static bool rises(double) { return false; }

@@ -83,8 +83,8 @@ class NeighbourListsOf {
   struct Candidate {
     double key;
     Index sphere;
-    bool operator<(const Candidate& other) const {
-      return key < other.key || (key == other.key && sphere < other.sphere);
+    bool operator<(const Candidate& rhs) const {
+      return key < rhs.key || (key == rhs.key && sphere < rhs.sphere);
     }
   };
 
@@ -113,9 +113,9 @@ class NeighbourListsOf {
   template <class Box>
   [[gnu::always_inline]] void consider(const Box& box, Index i, Index j, double reach,
                                        double touching) {
-    const Vec3 away = separation(box, unpacked(origins_[i]), unpacked(origins_[j]));
-    if (j == i || !(norm_squared(away) < reach * reach)) return;
-    double key = norm_squared(away + drift_);
+    const Vec3 displacement = separation(box, unpacked(origins_[i]), unpacked(origins_[j]));
+    if (j == i || !(norm_squared(displacement) < reach * reach)) return;
+    double key = norm_squared(displacement + drift_);
     if constexpr (Spheres::several) key /= touching * touching;
     candidates_.push_back({key, j});
   }

@@ -20,7 +20,7 @@ struct Reach {
 
 /// True if trials are first tested against blocker caches. They pay where few trials are accepted:
 /// every move brings those up to date that show the sphere.
-enum class BlockerCaching { off, on };
+enum class BlockerCaching { disabled, enabled };
 
 template <class Box, BlockerCaching caching, class Spheres = EqualSpheres>
 class NeighbourhoodView;
@@ -61,9 +61,9 @@ class Neighbourhood {
   template <BlockerCaching caching>
   View<caching> view(const Reach& reach) {
     reach_ = reach;
-    caches_follow_ = caches_follow_ && caching == BlockerCaching::on;
+    caches_follow_ = caches_follow_ && caching == BlockerCaching::enabled;
     if (reach.longest > built_for_) build<caching>();
-    if (caching == BlockerCaching::on && !caches_follow_) build_caches();
+    if (caching == BlockerCaching::enabled && !caches_follow_) build_caches();
     return View<caching>(*this);
   }
 
@@ -90,7 +90,7 @@ class Neighbourhood {
     lists_.build(box_, centres_, 2 * reach_.longest + spare_skin_, {0, 0, reach_.drift});
     built_for_ = reach_.longest;
     ++builds_;
-    if (caching == BlockerCaching::on) build_caches();
+    if (caching == BlockerCaching::enabled) build_caches();
   }
   [[gnu::noinline]] void build_caches() {
     caches_.build(packed_box_, centres_, lists_, built_for_);
@@ -101,10 +101,10 @@ class Neighbourhood {
   template <BlockerCaching caching>
   void renew(Index i) {
     const auto* const row = lists_.row(i);
-    if (caching == BlockerCaching::on) former_.assign(row + 1, row + 1 + row[0]);
+    if (caching == BlockerCaching::enabled) former_.assign(row + 1, row + 1 + row[0]);
     if (!lists_.renew(box_, i, centres_[i])) return build<caching>();
     ++renewals_;
-    if (caching == BlockerCaching::off) return;
+    if (caching == BlockerCaching::disabled) return;
     for (const auto j : former_) caches_.refresh(packed_box_, centres_, lists_, j);
   }
 
@@ -139,13 +139,13 @@ class NeighbourhoodView {
 
   /// Where a step, diameters, leads sphere i, wrapped.
   [[gnu::always_inline]] PackedCentre target(Index i, Pair lateral, double dz) const {
-    const PackedCentre& from = centres_[i];
-    return box_.wrapped({from.xy + lateral, from.z + dz, Spheres::several ? from.radius : 0});
+    const PackedCentre& centre = centres_[i];
+    return box_.wrapped({centre.xy + lateral, centre.z + dz, Spheres::several ? centre.radius : 0});
   }
 
   /// True if the cache alone rejects the step: then rejects() would. False decides nothing.
   [[gnu::always_inline]] bool certainly_rejects(Index i, double dx, double dy, double dz) const
-      requires(caching == BlockerCaching::on) {
+      requires(caching == BlockerCaching::enabled) {
     return jostle::certainly_rejects<Box>(caches_[i], static_cast<float>(dx),
                                           static_cast<float>(dy), static_cast<float>(dz));
   }
@@ -153,7 +153,7 @@ class NeighbourhoodView {
   /// True if floor, sides or another sphere reject sphere i at r, a target.
   [[gnu::always_inline]] bool rejects(Index i, const PackedCentre& r) {
     if (!box_.clear_of_boundaries(r)) return true;
-    if constexpr (caching == BlockerCaching::on) return blocked_beyond_cache(i, r);
+    if constexpr (caching == BlockerCaching::enabled) return blocked_beyond_cache(i, r);
     return blocked_by_first(i, r, *row(i));
   }
 
@@ -164,7 +164,7 @@ class NeighbourhoodView {
       return false;
     }
     centres_[i] = r;
-    if constexpr (caching == BlockerCaching::on) follow(i);
+    if constexpr (caching == BlockerCaching::enabled) follow(i);
     return true;
   }
 
@@ -193,8 +193,8 @@ class NeighbourhoodView {
     half_skin_squared_ = neighbourhood_.lists_.half_skin_squared();
   }
 
-  [[gnu::always_inline]] bool touches(const PackedCentre& r, const PackedCentre& other) const {
-    return distance_squared(box_, r, other) < Spheres::touching_squared(r, other);
+  [[gnu::always_inline]] bool touches(const PackedCentre& r, const PackedCentre& neighbour) const {
+    return distance_squared(box_, r, neighbour) < Spheres::touching_squared(r, neighbour);
   }
 
   // One of the first n neighbours.
@@ -228,7 +228,7 @@ class NeighbourhoodView {
     neighbourhood_.template renew<caching>(i);
     refresh();
     if (!blocked_by_first(i, r, *row(i))) return true;
-    if constexpr (caching == BlockerCaching::on) follow(i);
+    if constexpr (caching == BlockerCaching::enabled) follow(i);
     return false;
   }
 

@@ -19,22 +19,22 @@ namespace packed_geometry {
 
 /// `values` where the mask is set, else zero.
 template <class Mask>
-inline Pair where(Mask mask, Pair values) {
+inline Pair masked(Mask mask, Pair values) {
   using Bits = std::int64_t __attribute__((vector_size(16)));
   return (Pair)((Bits)mask & (Bits)values);
 }
 
 inline Pair wrap(Pair r, Pair width) {
-  r += where(r < 0, width);
-  return r - where(r >= width, width);
+  r += masked(r < 0, width);
+  return r - masked(r >= width, width);
 }
 
 inline Pair nearest_image(Pair d, Pair width) {
   const Pair half = 0.5 * width;
-  return d - (where(d > half, width) - where(d < -half, width));
+  return d - (masked(d > half, width) - masked(d < -half, width));
 }
 
-inline bool both(Pair low, Pair high) {
+inline bool are_ordered(Pair low, Pair high) {
   const auto inside = low <= high;
   return (inside[0] & inside[1]) != 0;
 }
@@ -51,8 +51,8 @@ inline float room_below(const PackedCentre& r) {
 }
 
 /// Room to the nearer of two walls, negative if that is the lower one.
-inline float room_between(double low, double at, double high) {
-  return at - low < high - at ? -room(at - low) : room(high - at);
+inline float room_between(double low, double height, double high) {
+  return height - low < high - height ? -room(height - low) : room(high - height);
 }
 
 }  // namespace packed_geometry
@@ -148,16 +148,18 @@ struct PackedFaces<PackedSides::floor_and_planes, Spheres> {
         high{shape.planes_x() ? extent.x - Spheres::known_radius : endless,
              shape.planes_y() ? extent.y - Spheres::known_radius : endless} {}
   bool clear_of_boundaries(const PackedCentre& r) const {
-    return r.z >= Spheres::radius(r) && packed_geometry::both(Spheres::raised(low, r), r.xy) &&
-           packed_geometry::both(r.xy, Spheres::lowered(high, r));
+    return r.z >= Spheres::radius(r) &&
+           packed_geometry::are_ordered(Spheres::raised(low, r), r.xy) &&
+           packed_geometry::are_ordered(r.xy, Spheres::lowered(high, r));
   }
   FaceAhead nearest_face(const PackedCentre& r) const {
-    const Pair below = r.xy - Spheres::raised(low, r), above = Spheres::lowered(high, r) - r.xy;
+    const Pair room_low = r.xy - Spheres::raised(low, r),
+               room_high = Spheres::lowered(high, r) - r.xy;
     FaceAhead nearest{r.z - Spheres::radius(r), {0, 0, -1}};
-    nearest.see(below[0], {-1, 0, 0});
-    nearest.see(above[0], {1, 0, 0});
-    nearest.see(below[1], {0, -1, 0});
-    nearest.see(above[1], {0, 1, 0});
+    nearest.see(room_low[0], {-1, 0, 0});
+    nearest.see(room_high[0], {1, 0, 0});
+    nearest.see(room_low[1], {0, -1, 0});
+    nearest.see(room_high[1], {0, 1, 0});
     return nearest;
   }
   Lanes room(const PackedCentre& r) const {

@@ -84,12 +84,12 @@ void polar(const BatchOrigin& origin, const double* __restrict theta_table, doub
     const std::uint64_t bits = __builtin_bit_cast(std::uint64_t, unit(words.w3[t]));
     const auto node = static_cast<std::int64_t>((bits >> shift) - theta_table::first);
     // The fraction of the way to the next node is in the remaining bits.
-    const double along =
+    const double azimuthal =
         __builtin_bit_cast(double, ((bits & rest) << theta_table::log2_nodes_per_octave) |
                                        __builtin_bit_cast(std::uint64_t, 1.0)) -
         1.0;
     const double low = theta_table[node];
-    const double half_theta = low + (theta_table[node + 1] - low) * along;
+    const double half_theta = low + (theta_table[node + 1] - low) * azimuthal;
     // Angles in [0, pi/2] and (-pi, pi) from their half and their quarter.
     const SineCosine theta = doubled(sine_cosine(half_theta));
     const SineCosine azimuth = doubled(doubled(sine_cosine(quarter_pi * centred(words.w1[t]))));

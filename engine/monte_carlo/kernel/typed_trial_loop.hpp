@@ -139,7 +139,7 @@ class TypedTrialLoop final : public TrialLoop {
   // One trial after another; `begin` is the trial of the batch that state_ reached.
   [[gnu::noinline]] void run_one_by_one(std::uint32_t begin, TrialRange range,
                                         TrialCounts& counts) {
-    auto view = neighbourhood_.template view<BlockerCaching::off>(move_.reach(state_.step));
+    auto view = neighbourhood_.template view<BlockerCaching::disabled>(move_.reach(state_.step));
     const double unit = move_.unit(state_.step);
     for (std::uint32_t k = range.first; k < range.last; ++k) {
       view.fetch_list(batch_.sphere[move_.trial(k + ProposalBatch::margin)]);
@@ -168,7 +168,7 @@ class TypedTrialLoop final : public TrialLoop {
   [[gnu::noinline]] void run_groups(TrialRange range, TrialCounts& counts) {
     std::array<std::uint32_t, 4 * group> open;
     std::uint32_t n_open = 0, n_fetched = 0;
-    auto view = neighbourhood_.template view<BlockerCaching::on>(move_.reach(state_.step));
+    auto view = neighbourhood_.template view<BlockerCaching::enabled>(move_.reach(state_.step));
     const double unit = move_.unit(state_.step);
     const bool wait = caching_.hardly_any_accepted() && n_spheres() > many_spheres;
     for (std::uint32_t k = range.first; k < range.last || n_open > 0;) {

@@ -39,7 +39,7 @@ class BoundTables {
     see_sizes();
     const double coarsest = grid_.coarsest() / std::min(1.0, least_touching_);
     for (float& spread : bins_.spread) spread += 2 * static_cast<float>(coarsest);
-    sight_ = sight();
+    limits_ = limits();
     places_.resize(centres_.size());
     std::ranges::transform(centres_, places_.begin(), place_in(grid_));
     build_lists();
@@ -48,7 +48,7 @@ class BoundTables {
     for (Index i = 0; i < centres_.size(); ++i) stale_.push_back(i);
     make_rows();
     std::vector<std::uint32_t> weights(centres_.size());
-    for (const Bounded& made : made_) weights[made.sphere] = made.weight;
+    for (const BoundedSphere& made : made_) weights[made.sphere] = made.weight;
     tree_.assign(std::move(weights));
   }
 
@@ -61,14 +61,14 @@ class BoundTables {
       renew_list(j);
     } else {
       stale_.resize(1 + most_listed(j) + 3);
-      stale_.resize(1 + kernels_.seen_by(sight_, surroundings(), j, former, stale_.data() + 1));
+      stale_.resize(1 + kernels_.seen_by(limits_, sphere_lists(), j, former, stale_.data() + 1));
     }
     for (const Index i : stale_) {
       prefetch(i);
       tree_.prefetch(i);
     }
     make_rows();
-    for (const Bounded& made : made_) tree_.set(made.sphere, made.weight);
+    for (const BoundedSphere& made : made_) tree_.set(made.sphere, made.weight);
   }
 
   const std::vector<PackedCentre>& centres() const { return centres_; }
@@ -81,7 +81,7 @@ class BoundTables {
   bool blocked(Index i, Vec3 step, const PackedCentre& target, std::uint64_t& tests) const {
     tests += *lists_.row(i);
     const StepOutcome outcome =
-        kernels_.try_step(sight_, surroundings(), i, step.x, step.y, step.z);
+        kernels_.try_step(limits_, sphere_lists(), i, step.x, step.y, step.z);
     return outcome == StepOutcome::unsure ? blocked(i, target, tests)
                                           : outcome == StepOutcome::blocked;
   }
@@ -114,8 +114,9 @@ class BoundTables {
     const Index* const row = lists_.row(i);
     for (const Index *j = row + 1, *const last = j + *row; j != last; ++j) {
       ++tests;
-      const PackedCentre& other = centres_[*j];
-      if (distance_squared(packed_box_, target, other) < Spheres::touching_squared(target, other)) {
+      const PackedCentre& neighbour = centres_[*j];
+      if (distance_squared(packed_box_, target, neighbour) <
+          Spheres::touching_squared(target, neighbour)) {
         return true;
       }
     }
@@ -143,28 +144,28 @@ class BoundTables {
   // An obstacle is up to `beyond` from contact, and what counts grows with the step. Then
   // |r| <= s + beyond, that is c <= 2 beyond / s + (beyond / s)^2. A step as long as a sphere is
   // wide may pass it by: then no bound holds.
-  Sight sight() const {
+  ObstacleLimits limits() const {
     const double longest = bins_.longest;
     const double beyond = std::min(Directions::obstacle_reach * longest, farthest_seen - 1);
     const double farthest = longest < too_long ? 1 + beyond : 0;
     const Vec3 unit = grid_.unit();
-    Sight sight{.unit = {static_cast<float>(unit.x), static_cast<float>(unit.y),
-                         static_cast<float>(-unit.z), 0},
-                .margin = static_cast<float>(rounding + 8 * grid_.coarsest()),
-                .doubt = 0,
-                .highest = static_cast<float>(Directions::highest_obstacle),
-                .farthest = static_cast<float>(farthest * farthest - 1),
-                .farthest_per_s = static_cast<float>(2 * beyond),
-                .farthest_per_s_squared = 0,
-                .most_c = static_cast<float>(farthest_seen * farthest_seen - 1),
-                .least_s = static_cast<float>(longest / too_long)};
-    sight.farthest_per_s_squared =
-        static_cast<float>((1 + beyond) * (1 + beyond) - 1) - sight.farthest_per_s;
+    ObstacleLimits limits{.unit = {static_cast<float>(unit.x), static_cast<float>(unit.y),
+                                   static_cast<float>(-unit.z), 0},
+                          .margin = static_cast<float>(rounding + 8 * grid_.coarsest()),
+                          .doubt = 0,
+                          .highest = static_cast<float>(Directions::highest_obstacle),
+                          .farthest = static_cast<float>(farthest * farthest - 1),
+                          .farthest_per_s = static_cast<float>(2 * beyond),
+                          .farthest_per_s_squared = 0,
+                          .most_c = static_cast<float>(farthest_seen * farthest_seen - 1),
+                          .least_s = static_cast<float>(longest / too_long)};
+    limits.farthest_per_s_squared =
+        static_cast<float>((1 + beyond) * (1 + beyond) - 1) - limits.farthest_per_s;
     constexpr double longest_seen = 8;
-    sight.doubt = longest < longest_seen && single_images()
-                      ? static_cast<float>(2 * (1 + longest)) * sight.margin
-                      : std::numeric_limits<float>::infinity();
-    return sight;
+    limits.doubt = longest < longest_seen && single_images()
+                       ? static_cast<float>(2 * (1 + longest)) * limits.margin
+                       : std::numeric_limits<float>::infinity();
+    return limits;
   }
 
   // True if a step meets a sphere only in the image that is nearest before the step: kernels look
@@ -212,11 +213,11 @@ class BoundTables {
       add_plane(made_[k].planes, {0, 0, 1}, own.z - Spheres::radius(own) + rounding);
       add_sides(made_[k].planes, own);
     }
-    make_bounds_(bins_, sight_, surroundings(), made_.data(), made_.size(), rows_.data());
+    make_bounds_(bins_, limits_, sphere_lists(), made_.data(), made_.size(), rows_.data());
     rows_made_ += made_.size();
   }
 
-  Surroundings surroundings() const {
+  SphereLists sphere_lists() const {
     const auto rows = lists_.rows_place();
     if constexpr (Spheres::several) {
       return {places_.data(), rows.first, 0, rows.offsets};
@@ -261,14 +262,14 @@ class BoundTables {
   BoundsKernel<Directions::n_sectors> make_bounds_;
   double least_touching_ = 1, greatest_touching_ = 1, spare_ = spare_per_diameter;
   Bins bins_{};
-  Sight sight_{};
+  ObstacleLimits limits_{};
   std::vector<PackedCentre> centres_;
   std::vector<GridPlace> places_;
   NeighbourListsOf<Spheres> lists_;
   std::vector<Row> rows_;
   WeightTree tree_;
   std::vector<Index> stale_;
-  std::vector<Bounded> made_;  // last
+  std::vector<BoundedSphere> made_;  // last
   std::uint64_t rows_made_ = 0;
 };
 

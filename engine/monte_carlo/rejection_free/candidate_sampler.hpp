@@ -139,8 +139,8 @@ class CandidateSampler {
     const auto& row = tables_.row(located.sphere);
     int sector = 0;
     for (int p = 0; p < n_sectors; ++p) sector += row.up_to[p] <= located.rest;
-    const std::int32_t before = sector == 0 ? 0 : row.up_to[sector - 1];
-    double rest = (located.rest - before) + located.fraction;
+    const std::int32_t weight_before = sector == 0 ? 0 : row.up_to[sector - 1];
+    double rest = (located.rest - weight_before) + located.fraction;
     // The likeliest first. A sector weighs a little more than its bins.
     for (int ring = n_rings - 1; ring >= 0; --ring) {
       const double size = Directions::size(row.bound(ring, sector));

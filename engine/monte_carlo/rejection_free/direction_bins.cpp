@@ -25,8 +25,8 @@ double half_theta(const std::vector<double>& table, double probability) {
   constexpr std::uint64_t rest = (std::uint64_t{1} << theta_table::shift) - 1;
   const auto bits = std::bit_cast<std::uint64_t>(v);
   const std::size_t node = (bits >> theta_table::shift) - theta_table::first;
-  const double along = static_cast<double>(bits & rest) / static_cast<double>(rest + 1);
-  return table[node] + (table[node + 1] - table[node]) * along;
+  const double share_along = static_cast<double>(bits & rest) / static_cast<double>(rest + 1);
+  return table[node] + (table[node + 1] - table[node]) * share_along;
 }
 
 SineCosine azimuth_angle(double share) {
@@ -42,14 +42,14 @@ struct RingShares {
   std::array<int, n_rings> parts;
   std::array<double, n_rings + 1> edges{};
 
-  constexpr explicit RingShares(const std::array<int, n_rings>& of) : parts(of) {
+  constexpr explicit RingShares(const std::array<int, n_rings>& ring_parts) : parts(ring_parts) {
     int sum = 0;
     for (int k = 0; k < n_rings; ++k) {
       sum += parts[k];
       edges[k + 1] = static_cast<double>(sum) / n_ring_parts;
     }
   }
-  constexpr double within(int k, double u) const {
+  constexpr double interpolated(int k, double u) const {
     return edges[k] + (edges[k + 1] - edges[k]) * u;
   }
 };
@@ -72,9 +72,9 @@ BinShape bin_shape(SineCosine inner, SineCosine outer, SineCosine half_sector) {
   for (int k = 0; k <= choices; ++k) {
     const double share = static_cast<double>(k) / choices;
     const double across = share * outer.sine + (1 - share) * inner.sine;
-    const double down = share * outer.cosine + (1 - share) * inner.cosine;
-    const double norm = std::sqrt(across * across + down * down);
-    const SineCosine theta{across / norm, down / norm};
+    const double vertical = share * outer.cosine + (1 - share) * inner.cosine;
+    const double norm = std::sqrt(across * across + vertical * vertical);
+    const SineCosine theta{across / norm, vertical / norm};
     const Vec3 middle = along_meridian(theta, {0, 1});
     const double cos_alpha = std::min(dot(middle, near), dot(middle, far));
     if (cos_alpha > best.cos_alpha) best = {theta, cos_alpha};
@@ -98,7 +98,7 @@ DirectionBins<n_sectors> bins_between(const RingEdges& edges, const RingShares& 
                                      : bin_shape(edges[k + 1], edges[k], half_sector);
     const double sin_alpha = std::sqrt(std::max(0.0, 1 - shape.cos_alpha * shape.cos_alpha));
     bins.across[k] = static_cast<float>(shape.theta.sine * shape.cos_alpha);
-    bins.down[k] = static_cast<float>(shape.theta.cosine * shape.cos_alpha);
+    bins.vertical[k] = static_cast<float>(shape.theta.cosine * shape.cos_alpha);
     bins.spread[k] = static_cast<float>(sin_alpha + 1e-6);
   }
   return bins;
@@ -145,11 +145,11 @@ DirectionBins<cubic_sectors> cubic_bins(double step) {
 }
 
 SineCosine polar_angle(const std::vector<double>& theta_table, int ring, double u) {
-  return doubled(sine_cosine(half_theta(theta_table, polar_rings.within(ring, u))));
+  return doubled(sine_cosine(half_theta(theta_table, polar_rings.interpolated(ring, u))));
 }
 
 SineCosine cubic_angle(int ring, double u) {
-  const double cosine = cubic_rings.within(ring, u);
+  const double cosine = cubic_rings.interpolated(ring, u);
   return {std::sqrt(1 - cosine * cosine), cosine};
 }
 

@@ -39,14 +39,14 @@ struct Obstacles {
 // Another position relative to a sphere's own, and s. All use one arithmetic for obstacles.
 // Differences wrap around, as places do through periodic sides.
 template <class Spheres>
-inline Four seen_from(const Sight& sight, FourIntegers own, FourIntegers other) {
+inline Four seen_from(const ObstacleLimits& limits, FourIntegers own, FourIntegers neighbour) {
   using Wrapping = std::uint32_t __attribute__((vector_size(16)));
-  auto between = (FourIntegers)((Wrapping)other - (Wrapping)own);
-  const Four unit = *reinterpret_cast<const Four*>(sight.unit);
-  if constexpr (!Spheres::several) return __builtin_convertvector(between, Four) * unit;
+  auto difference = (FourIntegers)((Wrapping)neighbour - (Wrapping)own);
+  const Four unit = *reinterpret_cast<const Four*>(limits.unit);
+  if constexpr (!Spheres::several) return __builtin_convertvector(difference, Four) * unit;
   constexpr FourIntegers radius = {0, 0, 0, -1}, position = {-1, -1, -1, 0};
-  const Four s = (Four)(own & radius) + (Four)(other & radius);
-  return __builtin_convertvector(between & position, Four) * unit + s;
+  const Four s = (Four)(own & radius) + (Four)(neighbour & radius);
+  return __builtin_convertvector(difference & position, Four) * unit + s;
 }
 
 // s of four pairs, its inverse, and the number by which a margin of c grows: the grid and the
@@ -74,34 +74,34 @@ inline Four tangent_squared(Four x, Four y, Four z, const Scale<Spheres>& scale,
 
 // The greatest c of an obstacle.
 template <class Spheres>
-inline auto farthest(const Sight& sight, const Scale<Spheres>& scale) {
+inline auto farthest(const ObstacleLimits& limits, const Scale<Spheres>& scale) {
   if constexpr (!Spheres::several) {
-    return sight.farthest;
+    return limits.farthest;
   } else {
     const Four c =
-        (sight.farthest_per_s + sight.farthest_per_s_squared * scale.inverse) * scale.inverse;
-    const Four most = Four{} + sight.most_c, none = Four{};
-    return scale.s > sight.least_s ? (c < most ? c : most) : none;
+        (limits.farthest_per_s + limits.farthest_per_s_squared * scale.inverse) * scale.inverse;
+    const Four most = Four{} + limits.most_c, none = Four{};
+    return scale.s > limits.least_s ? (c < most ? c : most) : none;
   }
 }
 
 // Tests four for obstacles, one bit each.
 template <class Spheres>
-inline unsigned in_the_way(const Sight& sight, const Four (&r)[4]) {
+inline unsigned in_the_way(const ObstacleLimits& limits, const Four (&r)[4]) {
   Four x = r[0], y = r[1], z = r[2], s = r[3];
   transpose(x, y, z, s);
   const Scale<Spheres> scale(s);
   const auto counts =
-      (tangent_squared<Spheres>(x, y, z, scale, sight.margin) < farthest<Spheres>(sight, scale)) &
-      (z > -sight.highest * scale.s);
+      (tangent_squared<Spheres>(x, y, z, scale, limits.margin) < farthest<Spheres>(limits, scale)) &
+      (z > -limits.highest * scale.s);
   return bits_of_four(counts);
 }
 
 // A list: its length, then the spheres.
 template <class Spheres>
-inline const std::uint32_t* list_of(const Surroundings& around, std::uint32_t i) {
-  if constexpr (Spheres::several) return around.lists + around.offsets[i];
-  return around.lists + i * around.stride;
+inline const std::uint32_t* list_of(const SphereLists& sphere_lists, std::uint32_t i) {
+  if constexpr (Spheres::several) return sphere_lists.lists + sphere_lists.offsets[i];
+  return sphere_lists.lists + i * sphere_lists.stride;
 }
 
 // Four of a list, from place m to `last` at most.
@@ -118,18 +118,18 @@ inline ListedFour listed_from(const std::uint32_t* list, std::uint32_t m, std::u
 
 // Adds the obstacles of sphere i among places `first` to `last` of its list.
 template <class Spheres>
-inline void look_around(const Sight& sight, const Surroundings& around, std::uint32_t i,
-                        const std::uint32_t* list, std::uint32_t first, std::uint32_t last,
-                        Obstacles& seen) {
-  const FourIntegers own = lanes_of(around.places[i]);
+inline void look_around(const ObstacleLimits& limits, const SphereLists& sphere_lists,
+                        std::uint32_t i, const std::uint32_t* list, std::uint32_t first,
+                        std::uint32_t last, Obstacles& seen) {
+  const FourIntegers own = lanes_of(sphere_lists.places[i]);
   std::uint32_t n = seen.n;
   for (std::uint32_t m = first; m <= last; m += 4) {
     const ListedFour four = listed_from(list, m, last);
     Four r[4];
     for (int k = 0; k < 4; ++k) {
-      r[k] = seen_from<Spheres>(sight, own, lanes_of(around.places[four.sphere[k]]));
+      r[k] = seen_from<Spheres>(limits, own, lanes_of(sphere_lists.places[four.sphere[k]]));
     }
-    const unsigned counts = in_the_way<Spheres>(sight, r) & four.mask;
+    const unsigned counts = in_the_way<Spheres>(limits, r) & four.mask;
     for (int k = 0; k < 4; ++k) {
       *reinterpret_cast<Four*>(seen.r[n]) = r[k];
       n += counts >> k & 1;  // no branch: it could not be guessed
@@ -140,21 +140,21 @@ inline void look_around(const Sight& sight, const Surroundings& around, std::uin
 }
 
 template <class Spheres>
-std::uint32_t seen_by(const Sight& sight, const Surroundings& around, std::uint32_t i,
-                      const GridPlace& former, std::uint32_t* seeing) {
-  const std::uint32_t* const list = list_of<Spheres>(around, i);
-  const FourIntegers before = lanes_of(former), now = lanes_of(around.places[i]);
+std::uint32_t seen_by(const ObstacleLimits& limits, const SphereLists& sphere_lists,
+                      std::uint32_t i, const GridPlace& former, std::uint32_t* seeing) {
+  const std::uint32_t* const list = list_of<Spheres>(sphere_lists, i);
+  const FourIntegers old_place = lanes_of(former), now = lanes_of(sphere_lists.places[i]);
   std::uint32_t n = 0;
   for (std::uint32_t m = 1; m <= list[0]; m += 4) {
     const ListedFour four = listed_from(list, m, list[0]);
     Four r_before[4], r_now[4];
     for (int k = 0; k < 4; ++k) {
-      const FourIntegers own = lanes_of(around.places[four.sphere[k]]);
-      r_before[k] = seen_from<Spheres>(sight, own, before);
-      r_now[k] = seen_from<Spheres>(sight, own, now);
+      const FourIntegers own = lanes_of(sphere_lists.places[four.sphere[k]]);
+      r_before[k] = seen_from<Spheres>(limits, own, old_place);
+      r_now[k] = seen_from<Spheres>(limits, own, now);
     }
     const unsigned counts =
-        (in_the_way<Spheres>(sight, r_before) | in_the_way<Spheres>(sight, r_now)) & four.mask;
+        (in_the_way<Spheres>(limits, r_before) | in_the_way<Spheres>(limits, r_now)) & four.mask;
     for (int k = 0; k < 4; ++k) {
       seeing[n] = four.sphere[k];
       n += counts >> k & 1;
@@ -171,7 +171,7 @@ class StepResolver;
 template <>
 class StepResolver<EqualSpheres> {
  public:
-  explicit StepResolver(const Sight& sight) : doubt_(sight.doubt) {}
+  explicit StepResolver(const ObstacleLimits& limits) : doubt_(limits.doubt) {}
   void see(Four squared, Four) { nearest_ = squared < nearest_ ? squared : nearest_; }
   bool blocked() const { return any_of_four(nearest_ < 1.0f - doubt_); }
   bool unsure() const { return any_of_four(nearest_ < 1.0f + doubt_); }
@@ -184,7 +184,7 @@ class StepResolver<EqualSpheres> {
 template <>
 class StepResolver<SeveralSizes> {
  public:
-  explicit StepResolver(const Sight& sight) : doubt_(sight.doubt) {}
+  explicit StepResolver(const ObstacleLimits& limits) : doubt_(limits.doubt) {}
   // Doubt is twice the margin times 1 + |d| / s.
   void see(Four squared, Four s) {
     const Scale<SeveralSizes> scale(s);
@@ -202,17 +202,17 @@ class StepResolver<SeveralSizes> {
 };
 
 template <class Spheres>
-StepOutcome try_step(const Sight& sight, const Surroundings& around, std::uint32_t i, double dx,
-                     double dy, double dz) {
-  const std::uint32_t* const list = list_of<Spheres>(around, i);
-  const FourIntegers own = lanes_of(around.places[i]);
+StepOutcome try_step(const ObstacleLimits& limits, const SphereLists& sphere_lists, std::uint32_t i,
+                     double dx, double dy, double dz) {
+  const std::uint32_t* const list = list_of<Spheres>(sphere_lists, i);
+  const FourIntegers own = lanes_of(sphere_lists.places[i]);
   const Four step = {static_cast<float>(dx), static_cast<float>(dy), static_cast<float>(-dz), 0};
-  StepResolver<Spheres> resolver(sight);
+  StepResolver<Spheres> resolver(limits);
   for (std::uint32_t m = 1; m <= list[0]; m += 4) {
     const ListedFour four = listed_from(list, m, list[0]);
     Four r[4];
     for (int k = 0; k < 4; ++k) {
-      r[k] = seen_from<Spheres>(sight, own, lanes_of(around.places[four.sphere[k]])) - step;
+      r[k] = seen_from<Spheres>(limits, own, lanes_of(sphere_lists.places[four.sphere[k]])) - step;
     }
     transpose(r[0], r[1], r[2], r[3]);
     resolver.see(r[0] * r[0] + r[1] * r[1] + r[2] * r[2], r[3]);

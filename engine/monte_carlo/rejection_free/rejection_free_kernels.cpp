@@ -20,11 +20,11 @@ constexpr int lanes = 4;
 using Floats = float __attribute__((vector_size(4 * lanes)));
 using Integers = std::int32_t __attribute__((vector_size(4 * lanes)));
 
-inline Floats load(const float* at) {
-  return *reinterpret_cast<const Floats*>(at);
+inline Floats load(const float* source) {
+  return *reinterpret_cast<const Floats*>(source);
 }
-inline void store(Floats values, float* at) {
-  *reinterpret_cast<Floats*>(at) = values;
+inline void store(Floats values, float* destination) {
+  *reinterpret_cast<Floats*>(destination) = values;
 }
 
 // Bounds as inverse lengths times the longest step. For component q of r such a bound is
@@ -51,7 +51,7 @@ constexpr float lowered = 0.999f;
 // (least, c / L), which is lower, needs no onset: for a lesser q its bound is beyond L.
 template <class Spheres, bool with_onset>
 void sphere_coefficients(const Obstacles& obstacles, float margin, float longest_step,
-                         Coefficients& out) {
+                         Coefficients& coefficients) {
   const float per_longest_step = 1.0f / longest_step, lowered_step = lowered * longest_step;
   for (std::uint32_t j = 0; j < obstacles.n; j += 4) {
     const auto* const r = reinterpret_cast<const Four*>(obstacles.r[j]);
@@ -70,46 +70,51 @@ void sphere_coefficients(const Obstacles& obstacles, float margin, float longest
       onset = inside > onset ? inside : onset;
     }
     const Four slope = lowered_longest * (((norm + 1.0f) * per_c - onset) / (norm - least));
-    const auto put = [j](Four values, float* to) { *reinterpret_cast<Four*>(to + j) = values; };
-    put(x * scale.inverse * slope, out.x);
-    put(y * scale.inverse * slope, out.y);
-    put(z * scale.inverse * slope, out.z);
-    put(norm * slope, out.norm);
-    put(lowered_longest * onset - slope * least, out.level);
-    put(lowered_longest * onset * 1.00001f, out.onset);  // safe from rounding
+    const auto put = [j](Four values, float* destination) {
+      *reinterpret_cast<Four*>(destination + j) = values;
+    };
+    put(x * scale.inverse * slope, coefficients.x);
+    put(y * scale.inverse * slope, coefficients.y);
+    put(z * scale.inverse * slope, coefficients.z);
+    put(norm * slope, coefficients.norm);
+    put(lowered_longest * onset - slope * least, coefficients.level);
+    put(lowered_longest * onset * 1.00001f, coefficients.onset);  // safe from rounding
   }
 }
 
 // A step meets a plane at the gap over q, the component of the plane's normal.
-void add_planes(const Planes& planes, std::uint32_t n, float longest, Coefficients& out) {
+void add_planes(const Planes& planes, std::uint32_t n, float longest, Coefficients& coefficients) {
   for (std::uint32_t w = 0; w < planes.n; ++w, ++n) {
     const float per_gap = lowered * longest / planes.gap[w];
-    out.x[n] = planes.x[w] * per_gap;
-    out.y[n] = planes.y[w] * per_gap;
-    out.z[n] = planes.z[w] * per_gap;
-    out.norm[n] = per_gap;
-    out.level[n] = 0;
-    out.onset[n] = 0;
+    coefficients.x[n] = planes.x[w] * per_gap;
+    coefficients.y[n] = planes.y[w] * per_gap;
+    coefficients.z[n] = planes.z[w] * per_gap;
+    coefficients.norm[n] = per_gap;
+    coefficients.level[n] = 0;
+    coefficients.onset[n] = 0;
   }
 }
 
 // The lines of all obstacles, [obstacle][sector] and [obstacle][ring]: their product with a ring's
 // width and their sum is the bound.
 template <int n_sectors>
-struct Lines {
+struct ObstacleLines {
   alignas(64) float sideways[Coefficients::size][n_sectors];
   alignas(64) float downward[Coefficients::size][n_rings];
 };
 
 template <int n_sectors>
-void draw_lines(const DirectionBins<n_sectors>& bins, const Coefficients& of, std::uint32_t n,
-                Lines<n_sectors>& lines) {
+void draw_lines(const DirectionBins<n_sectors>& bins, const Coefficients& coefficients,
+                std::uint32_t n, ObstacleLines<n_sectors>& lines) {
   for (std::uint32_t j = 0; j < n; ++j) {
     for (int p = 0; p < n_sectors; p += lanes) {
-      store(of.x[j] * load(&bins.cosine[p]) + of.y[j] * load(&bins.sine[p]), &lines.sideways[j][p]);
+      store(coefficients.x[j] * load(&bins.cosine[p]) + coefficients.y[j] * load(&bins.sine[p]),
+            &lines.sideways[j][p]);
     }
     for (int k = 0; k < n_rings; ++k) {
-      lines.downward[j][k] = (of.z[j] * bins.down[k] - of.norm[j] * bins.spread[k]) + of.level[j];
+      lines.downward[j][k] =
+          (coefficients.z[j] * bins.vertical[k] - coefficients.norm[j] * bins.spread[k]) +
+          coefficients.level[j];
     }
   }
 }
@@ -134,14 +139,15 @@ using Inverses = Integers[n_rings];  // one sector per lane
 template <bool with_onset, int n_sectors>
 [[gnu::always_inline]] inline void greatest(const DirectionBins<n_sectors>& bins,
                                             const Coefficients& coefficients,
-                                            const Lines<n_sectors>& lines, std::uint32_t begin,
-                                            std::uint32_t end, int p, Inverses& inverse) {
+                                            const ObstacleLines<n_sectors>& lines,
+                                            std::uint32_t begin, std::uint32_t end, int p,
+                                            Inverses& inverse) {
   for (std::uint32_t j = begin; j < end; ++j) {
     const Floats sideways = load(&lines.sideways[j][p]);
     for (int k = 0; k < n_rings; ++k) {
-      Floats here = sideways * bins.across[k] + lines.downward[j][k];
-      if constexpr (with_onset) here = here >= coefficients.onset[j] ? here : Floats{};
-      inverse[k] = (Integers)here > inverse[k] ? (Integers)here : inverse[k];
+      Floats bound = sideways * bins.across[k] + lines.downward[j][k];
+      if constexpr (with_onset) bound = bound >= coefficients.onset[j] ? bound : Floats{};
+      inverse[k] = (Integers)bound > inverse[k] ? (Integers)bound : inverse[k];
     }
   }
 }
@@ -172,9 +178,9 @@ inline Integers weigh(const DirectionBins<polar_sectors>& bins, const Inverses& 
 inline Integers cubed(Integers inverse, const std::int32_t* caps) {
   const Floats ratio = reciprocal((Floats)inverse);
   const Floats bound = ratio * ratio * ratio * float{whole_weight};
-  const Integers above = __builtin_convertvector(bound, Integers) + 1;
+  const Integers rounded_up = __builtin_convertvector(bound, Integers) + 1;
   const Integers cap = *reinterpret_cast<const Integers*>(caps);
-  return above < cap ? above : cap;
+  return rounded_up < cap ? rounded_up : cap;
 }
 
 inline Integers weigh(const DirectionBins<cubic_sectors>& bins, const Inverses& inverse, int p,
@@ -192,7 +198,7 @@ inline Integers weigh(const DirectionBins<cubic_sectors>& bins, const Inverses& 
 // Sums up the weights of sectors.
 template <int n_sectors>
 [[gnu::always_inline]] inline void sum_weights(const std::int32_t (&sector_weight)[n_sectors],
-                                               Bounded& sphere, BoundRow<n_sectors>& row) {
+                                               BoundedSphere& sphere, BoundRow<n_sectors>& row) {
   std::int32_t sum = 0;
   for (int p = 0; p < n_sectors; ++p) row.up_to[p] = sum += sector_weight[p];
   sphere.weight = static_cast<std::uint32_t>(sum);
@@ -200,21 +206,22 @@ template <int n_sectors>
 
 template <bool with_onset, int n_sectors>
 [[gnu::always_inline]] inline void make_group(const DirectionBins<n_sectors>& bins,
-                                              const Sight& sight, const Surroundings& around,
-                                              Bounded* spheres, std::size_t n,
+                                              const ObstacleLimits& limits,
+                                              const SphereLists& sphere_lists,
+                                              BoundedSphere* spheres, std::size_t n,
                                               BoundRow<n_sectors>* rows) {
   Obstacles obstacles;
   Coefficients coefficients;
-  Lines<n_sectors> lines;
+  ObstacleLines<n_sectors> lines;
   std::uint32_t ends[group];
   const auto longest = static_cast<float>(bins.longest);
   for (std::size_t s = 0; s < n; ++s) {
     const std::uint32_t i = spheres[s].sphere;
-    const std::uint32_t* const list = list_of<EqualSpheres>(around, i);
-    look_around<EqualSpheres>(sight, around, i, list, 1, list[0], obstacles);
+    const std::uint32_t* const list = list_of<EqualSpheres>(sphere_lists, i);
+    look_around<EqualSpheres>(limits, sphere_lists, i, list, 1, list[0], obstacles);
     ends[s] = obstacles.n += spheres[s].planes.n;
   }
-  sphere_coefficients<EqualSpheres, with_onset>(obstacles, sight.margin, longest, coefficients);
+  sphere_coefficients<EqualSpheres, with_onset>(obstacles, limits.margin, longest, coefficients);
   for (std::size_t s = 0; s < n; ++s) {
     add_planes(spheres[s].planes, ends[s] - spheres[s].planes.n, longest, coefficients);
   }
@@ -234,19 +241,19 @@ template <bool with_onset, int n_sectors>
 }
 
 template <bool with_onset, int n_sectors>
-void make_bounds(const DirectionBins<n_sectors>& bins, const Sight& sight,
-                 const Surroundings& around, Bounded* spheres, std::size_t n,
+void make_bounds(const DirectionBins<n_sectors>& bins, const ObstacleLimits& limits,
+                 const SphereLists& sphere_lists, BoundedSphere* spheres, std::size_t n,
                  BoundRow<n_sectors>* rows) {
   for (; n > group; n -= group, spheres += group) {
-    make_group<with_onset>(bins, sight, around, spheres, group, rows);
+    make_group<with_onset>(bins, limits, sphere_lists, spheres, group, rows);
   }
-  make_group<with_onset>(bins, sight, around, spheres, n, rows);
+  make_group<with_onset>(bins, limits, sphere_lists, spheres, n, rows);
 }
 
 // Part of the list of a sphere, short enough for the room that obstacles have in a group: a large
 // sphere among small ones has hundreds of neighbours.
 struct ListPart {
-  Bounded* sphere;
+  BoundedSphere* sphere;
   std::uint32_t first, last;  // places in the list
   bool begins, ends;          // true for the first and the last part of a list
 };
@@ -254,12 +261,12 @@ struct ListPart {
 // The lists of spheres, part by part.
 class ListParts {
  public:
-  ListParts(const Surroundings& around, Bounded* spheres, std::size_t n)
-      : around_(around), sphere_(spheres), end_(spheres + n) {}
+  ListParts(const SphereLists& sphere_lists, BoundedSphere* spheres, std::size_t n)
+      : sphere_lists_(sphere_lists), sphere_(spheres), end_(spheres + n) {}
 
   bool done() const { return sphere_ == end_; }
   ListPart next() {
-    const std::uint32_t length = *list_of<SeveralSizes>(around_, sphere_->sphere);
+    const std::uint32_t length = *list_of<SeveralSizes>(sphere_lists_, sphere_->sphere);
     const bool ends = length - passed_ <= most_in_the_way;
     const std::uint32_t last = ends ? length : passed_ + most_in_the_way;
     const ListPart part{sphere_, passed_ + 1, last, passed_ == 0, ends};
@@ -269,35 +276,35 @@ class ListParts {
   }
 
  private:
-  const Surroundings& around_;
-  Bounded* sphere_;
-  Bounded* end_;
+  const SphereLists& sphere_lists_;
+  BoundedSphere* sphere_;
+  BoundedSphere* end_;
   std::uint32_t passed_ = 0;  // places of the list of sphere_ that earlier parts have
 };
 
 // Like make_bounds() for spheres of several sizes, in groups of parts of lists. The greatest of all
 // lines does not depend on how a list is cut.
 template <bool with_onset, int n_sectors>
-void make_bounds_of_sizes(const DirectionBins<n_sectors>& bins, const Sight& sight,
-                          const Surroundings& around, Bounded* spheres, std::size_t n,
+void make_bounds_of_sizes(const DirectionBins<n_sectors>& bins, const ObstacleLimits& limits,
+                          const SphereLists& sphere_lists, BoundedSphere* spheres, std::size_t n,
                           BoundRow<n_sectors>* rows) {
   const auto longest = static_cast<float>(bins.longest);
   Inverses inverse[n_sectors / lanes];  // kept for the rest of a list in the next group
-  for (ListParts lists(around, spheres, n); !lists.done();) {
+  for (ListParts lists(sphere_lists, spheres, n); !lists.done();) {
     Obstacles obstacles;
     Coefficients coefficients;
-    Lines<n_sectors> lines;
+    ObstacleLines<n_sectors> lines;
     ListPart parts[group];
     std::uint32_t ends[group];
     std::size_t n_parts = 0;
     for (; n_parts < group && !lists.done(); ++n_parts) {
       const ListPart part = parts[n_parts] = lists.next();
       const std::uint32_t i = part.sphere->sphere;
-      look_around<SeveralSizes>(sight, around, i, list_of<SeveralSizes>(around, i), part.first,
-                                part.last, obstacles);
+      look_around<SeveralSizes>(limits, sphere_lists, i, list_of<SeveralSizes>(sphere_lists, i),
+                                part.first, part.last, obstacles);
       ends[n_parts] = obstacles.n += part.ends ? part.sphere->planes.n : 0;
     }
-    sphere_coefficients<SeveralSizes, with_onset>(obstacles, sight.margin, longest, coefficients);
+    sphere_coefficients<SeveralSizes, with_onset>(obstacles, limits.margin, longest, coefficients);
     for (std::size_t k = 0; k < n_parts; ++k) {
       if (!parts[k].ends) continue;
       const Planes& planes = parts[k].sphere->planes;
@@ -305,7 +312,7 @@ void make_bounds_of_sizes(const DirectionBins<n_sectors>& bins, const Sight& sig
     }
     draw_lines(bins, coefficients, obstacles.n, lines);
     for (std::size_t k = 0; k < n_parts; ++k) {
-      Bounded& sphere = *parts[k].sphere;
+      BoundedSphere& sphere = *parts[k].sphere;
       BoundRow<n_sectors>& row = rows[sphere.sphere];
       const std::uint32_t begin = k == 0 ? 0 : ends[k - 1];
       alignas(64) std::int32_t sector_weight[n_sectors];

@@ -25,7 +25,7 @@ struct DirectionBins {
   static constexpr int sectors = n_sectors;
   alignas(64) float cosine[n_sectors], sine[n_sectors];  // sine of the azimuth of a sector's middle
   alignas(32) float across[n_rings];                     // sin(theta) cos(alpha) of a ring's middle
-  alignas(32) float down[n_rings];                       // cos(theta) cos(alpha)
+  alignas(32) float vertical[n_rings];                   // cos(theta) cos(alpha)
   alignas(32) float spread[n_rings];                     // sin(alpha), rounded up
   alignas(64) std::int32_t cap[n_rings][n_sectors];      // upper limit of steps
   int parts[n_rings];
@@ -45,7 +45,7 @@ struct alignas(16) GridPlace {
 /// Rules by which a sphere sees the others: the unit of differences of places, and the obstacles
 /// that bounds take into account. r is the vector from a centre to an obstacle's, s the sum of both
 /// radii, c = |r|^2 / s^2 - 1. Equal spheres have s = 1.
-struct alignas(16) Sight {
+struct alignas(16) ObstacleLimits {
   float unit[4];   // diameters per step of the grid: x, y, -z (z counts downward), 0
   float margin;    // margin of c for the grid and for rounding in single precision, at s >= 1
   float doubt;     // the limit after a step; infinite where the grid is too small for steps
@@ -57,7 +57,7 @@ struct alignas(16) Sight {
 };
 
 /// Spheres and their lists (engine/monte_carlo/kernel/list_rows.hpp).
-struct Surroundings {
+struct SphereLists {
   const GridPlace* places;
   const std::uint32_t* lists;
   std::size_t stride;          // equal spheres: from the list of one sphere to that of the next
@@ -92,7 +92,7 @@ struct alignas(64) BoundRow {
 };
 
 /// A sphere whose bounds are to be made, and their sum of weights.
-struct Bounded {
+struct BoundedSphere {
   std::uint32_t sphere, weight;
   Planes planes;
 };
@@ -109,9 +109,9 @@ struct CandidateBatch {
 
 /// Makes the rows of n spheres, rows[sphere], and their weights. Their memory accesses overlap.
 template <int n_sectors>
-using BoundsKernel = void (*)(const DirectionBins<n_sectors>& bins, const Sight& sight,
-                              const Surroundings& around, Bounded* spheres, std::size_t n,
-                              BoundRow<n_sectors>* rows);
+using BoundsKernel = void (*)(const DirectionBins<n_sectors>& bins, const ObstacleLimits& limits,
+                              const SphereLists& sphere_lists, BoundedSphere* spheres,
+                              std::size_t n, BoundRow<n_sectors>* rows);
 
 /// Resolution of a step in single precision.
 enum class StepOutcome { free, blocked, unsure };
@@ -122,12 +122,12 @@ struct BoundKernels {
   BoundsKernel<cubic_sectors> cubic_bounds;
   /// Notes those in the list of sphere i whose bounds sphere i takes part in, at its place or at
   /// `former`. Returns how many; `seeing` has room for 3 more than are listed.
-  std::uint32_t (*seen_by)(const Sight& sight, const Surroundings& around, std::uint32_t i,
-                           const GridPlace& former, std::uint32_t* seeing);
+  std::uint32_t (*seen_by)(const ObstacleLimits& limits, const SphereLists& sphere_lists,
+                           std::uint32_t i, const GridPlace& former, std::uint32_t* seeing);
   /// Resolves whether the spheres in its list leave sphere i where a step leads it; of the step z
   /// is up.
-  StepOutcome (*try_step)(const Sight& sight, const Surroundings& around, std::uint32_t i,
-                          double dx, double dy, double dz);
+  StepOutcome (*try_step)(const ObstacleLimits& limits, const SphereLists& sphere_lists,
+                          std::uint32_t i, double dx, double dy, double dz);
 };
 
 struct RejectionFreeKernels {

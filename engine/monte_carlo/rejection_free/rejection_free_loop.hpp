@@ -53,7 +53,7 @@ class RejectionFreeLoop final : public TrialLoop {
   }
 
   void begin_tap() override {
-    look_at_all_again();
+    return_to_exhaustive();
     be_exhaustive();
     exhaustive_.begin_tap();
   }
@@ -62,7 +62,7 @@ class RejectionFreeLoop final : public TrialLoop {
     while (n_trials > 0) {
       const std::uint64_t piece = std::min(n_trials, until_decision());
       const std::uint64_t accepted_before = tally_.accepted;
-      sampler_.active ? try_candidates(piece) : look_at_all(piece);
+      sampler_.active ? try_candidates(piece) : run_exhaustive(piece);
       tally_.trials += piece;
       n_trials -= piece;
       const std::uint64_t accepted = tally_.accepted - accepted_before;
@@ -125,10 +125,10 @@ class RejectionFreeLoop final : public TrialLoop {
     return sampler_.active ? std::min(window, exhaustive_.move().until_adaptation(move_)) : window;
   }
 
-  void look_at_all(std::uint64_t n_trials) {
-    const std::uint64_t before = exhaustive_.tally().accepted;
+  void run_exhaustive(std::uint64_t n_trials) {
+    const std::uint64_t accepted_before = exhaustive_.tally().accepted;
     exhaustive_.run(n_trials);
-    tally_.accepted += exhaustive_.tally().accepted - before;
+    tally_.accepted += exhaustive_.tally().accepted - accepted_before;
   }
 
   void decide(std::uint64_t trials, std::uint64_t accepted) {
@@ -139,11 +139,11 @@ class RejectionFreeLoop final : public TrialLoop {
         static_cast<double>(sampler_.window_accepted) / static_cast<double>(sampler_.window_trials);
     sampler_.window_trials = sampler_.window_accepted = 0;
     if (!sampler_.active && share < Directions::least_acceptance) begin_rejection_free();
-    if (sampler_.active && share > several * Directions::least_acceptance) look_at_all_again();
+    if (sampler_.active && share > several * Directions::least_acceptance) return_to_exhaustive();
   }
 
   // Hands the centres back to the exhaustive loop, if they are not there.
-  [[gnu::noinline]] void look_at_all_again() {
+  [[gnu::noinline]] void return_to_exhaustive() {
     if (!sampler_.active) return;
     load(stored());
   }
@@ -181,9 +181,9 @@ class RejectionFreeLoop final : public TrialLoop {
     draw_candidate(move_.next_trial);
   }
 
-  void draw_candidate(std::uint64_t from) {
+  void draw_candidate(std::uint64_t first_word) {
     const std::uint64_t wait = candidates_.trials_before(++sampler_.candidate);
-    sampler_.pending = wait == candidates_.never ? candidates_.never : from + wait;
+    sampler_.pending = wait == candidates_.never ? candidates_.never : first_word + wait;
   }
 
   void try_candidates(std::uint64_t n_trials) {

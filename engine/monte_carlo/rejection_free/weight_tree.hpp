@@ -26,8 +26,8 @@ class WeightTree {
       std::vector<Node> nodes(sums.size() / fan);
       for (std::size_t k = 0; k < nodes.size(); ++k) {
         const std::uint64_t* const children = &sums[k * fan];
-        std::exclusive_scan(children, children + fan, nodes[k].before, std::uint64_t{0});
-        sums[k] = nodes[k].before[fan - 1] + children[fan - 1];
+        std::exclusive_scan(children, children + fan, nodes[k].sum_before, std::uint64_t{0});
+        sums[k] = nodes[k].sum_before[fan - 1] + children[fan - 1];
       }
       sums.resize(nodes.size());
       levels_.push_back(std::move(nodes));
@@ -43,7 +43,7 @@ class WeightTree {
     for (std::vector<Node>& level : levels_) {
       const std::uint64_t* const counts = &first_none_then_all[fan - 1 - k % fan];
       Node& node = level[k /= fan];
-      for (std::size_t c = 0; c < fan; ++c) node.before[c] += change & counts[c];
+      for (std::size_t c = 0; c < fan; ++c) node.sum_before[c] += change & counts[c];
     }
     total_ += change;
   }
@@ -61,11 +61,11 @@ class WeightTree {
     assert(target < total());
     std::size_t k = 0;
     for (std::size_t level = levels_.size(); level-- > 0;) {
-      const std::uint64_t* const before = levels_[level][k].before;
+      const std::uint64_t* const sums = levels_[level][k].sum_before;
       std::size_t child = 0;
 #pragma GCC unroll 8
-      for (std::size_t c = 1; c < fan; ++c) child += target >= before[c];
-      target -= before[child];
+      for (std::size_t c = 1; c < fan; ++c) child += target >= sums[c];
+      target -= sums[child];
       k = k * fan + child;
     }
     return {static_cast<std::uint32_t>(k), target};
@@ -82,7 +82,7 @@ class WeightTree {
 
   // For every child, the sum of the weights of all children before it.
   struct alignas(64) Node {
-    std::uint64_t before[fan];
+    std::uint64_t sum_before[fan];
   };
 
   // Its last fan - 1 - k words are all bits, those before are none: no branch is needed.

@@ -49,7 +49,7 @@ struct AgeingCurves {
 
   std::vector<std::uint64_t> count;  // realizations of each pair
 
-  std::size_t at(std::size_t waiting_time, std::size_t lag) const {
+  std::size_t index_of(std::size_t waiting_time, std::size_t lag) const {
     return waiting_time * grid.lags.size() + lag;
   }
 };

@@ -68,25 +68,25 @@ void add_curves(const AgeingCurves& curves, const std::string& of_change, Table&
 
 // A parameter without a limit on a side has diverged, and has no value; scales at a held B have no
 // errors of their own.
-LogEstimate storable(const AgeingLaw& law, LogEstimate AgeingLaw::*parameter, bool together) {
+LogEstimate storable(const AgeingLaw& law, LogEstimate AgeingLaw::*parameter, bool is_joint) {
   const LogEstimate& estimate = law.*parameter;
-  if (!is_limited(estimate) || (together && !law.is_determined())) return no_estimate();
+  if (!is_limited(estimate) || (is_joint && !law.is_determined())) return no_estimate();
   if (!law.b_is_held) return estimate;
   LogEstimate scale = no_estimate();
   scale.value = estimate.value;
   return scale;
 }
 
-/// `together`: parameters mean something only where all have limits.
+/// `is_joint`: parameters mean something only where all have limits.
 void add_laws(const std::vector<AgeingLaw>& laws, const std::string& prefix,
-              const std::string& which, const std::string& units, bool together, Table& table) {
+              const std::string& suffix, const std::string& units, bool is_joint, Table& table) {
   const std::vector<std::string> axes = {"waiting_time"};
   const auto add = [&](const char* name, LogEstimate AgeingLaw::*parameter, const std::string& unit,
                        const std::string& meaning) {
     std::vector<LogEstimate> estimates;
-    for (const AgeingLaw& law : laws) estimates.push_back(storable(law, parameter, together));
+    for (const AgeingLaw& law : laws) estimates.push_back(storable(law, parameter, is_joint));
     table.quantities.push_back({prefix + name, axes, numbers(estimates, &LogEstimate::value), unit,
-                                meaning + which, eq_6});
+                                meaning + suffix, eq_6});
     for (const auto& [ending, field, of_field] : estimate_columns) {
       table.quantities.push_back(
           {prefix + name + ending, axes, numbers(estimates, field), unit, of_field, ""});
@@ -102,9 +102,9 @@ void add_laws(const std::vector<AgeingLaw>& laws, const std::string& prefix,
     verdicts.push_back(law.verdict);
   }
   table.quantities.push_back({prefix + "misfit", axes, std::move(misfits), "1",
-                              "root mean square of a / law - 1" + which, eq_6});
+                              "root mean square of a / law - 1" + suffix, eq_6});
   table.quantities.push_back({prefix + "verdict", axes, std::move(verdicts), "1",
-                              "how well the curve limits the parameters" + which, ""});
+                              "how well the curve limits the parameters" + suffix, ""});
 }
 
 void add_scaled(const AgeingCurves& curves, const AgeingFits& fits, Table& table) {
@@ -113,7 +113,7 @@ void add_scaled(const AgeingCurves& curves, const AgeingFits& fits, Table& table
     const AgeingLaw& law = fits.shared[k];
     const double tau = law.is_determined() ? law.tau.value : no_estimate().value;
     for (std::size_t j = 0; j < curves.grid.lags.size(); ++j) {
-      const std::size_t i = curves.at(k, j);
+      const std::size_t i = curves.index_of(k, j);
       x.push_back(static_cast<double>(curves.grid.lags[j]) / tau);
       y.push_back(law.is_determined() ? curves.a[i].value / law.a_inf.value : tau);
       error.push_back(y.back() * fits.scaled_error[i]);
@@ -138,7 +138,7 @@ void add_scaled(const AgeingCurves& curves, const AgeingFits& fits, Table& table
 ScaledCurve scaled_curve(const AgeingCurves& curves, std::size_t k, double tau, double a_inf) {
   ScaledCurve scaled;
   for (std::size_t j = 0; j < curves.grid.lags.size(); ++j) {
-    const double a = curves.a[curves.at(k, j)].value;
+    const double a = curves.a[curves.index_of(k, j)].value;
     if (!std::isfinite(a)) continue;
     scaled.x.push_back(static_cast<double>(curves.grid.lags[j]) / tau);
     scaled.y.push_back(a / a_inf);
@@ -155,30 +155,30 @@ void add_distances(const AgeingCurves& curves, const AgeingFits& fits, Table& ta
       scaled.push_back(scaled_curve(curves, k, law.tau.value, law.a_inf.value));
     }
   }
-  const auto add = [&](const char* name, const Collapse& found, const std::string& which) {
+  const auto add = [&](const char* name, const Collapse& found, const std::string& suffix) {
     table.quantities.push_back(
         {name,
          {},
          std::vector{found.relative},
          "1",
-         "root mean square difference between waiting times over that of the values, " + which,
+         "root mean square difference between waiting times over that of the values, " + suffix,
          ""});
   };
   add("collapse_relative", collapse(scaled), "of scaled_a at equal scaled_lag");
   add("unscaled_collapse_relative", collapse(unscaled), "of a at equal lag");
 }
 
-void add_trend(const AgeTrend& trend, const std::string& prefix, const std::string& of,
+void add_trend(const AgeTrend& trend, const std::string& prefix, const std::string& symbol,
                Table& table) {
   const auto add = [&](const std::string& name, double value, const std::string& meaning) {
     table.quantities.push_back({prefix + name, {}, std::vector{value}, "1", meaning, ""});
   };
   add("_factor", trend.factor.value,
-      "factor by which " + of + " changes from the first waiting time to the last");
+      "factor by which " + symbol + " changes from the first waiting time to the last");
   for (const auto& [ending, field, meaning] : estimate_columns) {
     add(std::string("_factor").append(ending), trend.factor.*field, meaning);
   }
-  add("_p", trend.p, "p-value of no change of " + of + ", Student's t over realizations");
+  add("_p", trend.p, "p-value of no change of " + symbol + ", Student's t over realizations");
   add("_detectable", trend.detectable, "factor that would be found at 5 % with power 0.8");
   table.notes.emplace_back(prefix + "_verdict", trend.verdict);
 }
@@ -188,14 +188,14 @@ double or_nan(double end) {
   return std::isinf(end) ? no_estimate().value : end;
 }
 
-void add_scaling(const TimeScaling& scaling, const std::string& prefix, const std::string& of,
+void add_scaling(const TimeScaling& scaling, const std::string& prefix, const std::string& symbol,
                  Table& table) {
   const AgeingExponent& power = scaling.power;
   const auto add = [&](const std::string& name, double value, const std::string& meaning,
                        const char* source) {
     table.quantities.push_back({prefix + name, {}, std::vector{value}, "1", meaning, source});
   };
-  add("mu", power.mu, "exponent of age: " + of + " as a function of t / t_W^mu",
+  add("mu", power.mu, "exponent of age: " + symbol + " as a function of t / t_W^mu",
       "Bouchaud et al. 1998, arXiv:cond-mat/9702070");
   add("mu_error", power.error, "standard error over realizations", "");
   add("mu_low_68", or_nan(power.low_68), "lower end of the 68 % interval, Student's t", "");
@@ -207,7 +207,8 @@ void add_scaling(const TimeScaling& scaling, const std::string& prefix, const st
        {std::tuple{"power_collapse", "t / t_W^mu", &power.collapse},
         std::tuple{"logarithmic_collapse", "ln(t_W + t) / ln t_W", &scaling.logarithmic}}) {
     add(std::string(name) + "_p", collapse->p,
-        "p-value of " + of + " as one function of " + variable + ", Student's t over realizations",
+        "p-value of " + symbol + " as one function of " + variable +
+            ", Student's t over realizations",
         "");
     add(std::string(name) + "_detectable", collapse->detectable,
         "factor between the ages that would be found at 5 % with power 0.8", "");

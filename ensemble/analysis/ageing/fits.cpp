@@ -34,26 +34,27 @@ std::vector<std::uint32_t> complete_realizations(const TapRows& rows) {
 
 // Describes how the data constrain one parameter; empty where they constrain it well.
 std::string statement(const char* name, const LogEstimate& estimate) {
-  const bool above = estimate.low_95 > 0, below = std::isfinite(estimate.high_95);
-  if (above && below) {
+  const bool has_lower = estimate.low_95 > 0, has_upper = std::isfinite(estimate.high_95);
+  if (has_lower && has_upper) {
     if (estimate.high_95 <= wide * estimate.value && wide * estimate.low_95 >= estimate.value) {
       return "";
     }
     return finite_text("{} is wide: {:.3g} to {:.3g} (95 %)", name, estimate.low_95,
                        estimate.high_95);
   }
-  if (!above && !below) return fmt::format("{} is not identifiable: no limit on either side", name);
+  if (!has_lower && !has_upper)
+    return fmt::format("{} is not identifiable: no limit on either side", name);
   return finite_text("{} has only {} limit: {} {} {:.3g} (95 %)", name,
-                     above ? "a lower" : "an upper", name, above ? '>' : '<',
-                     above ? estimate.low_95 : estimate.high_95);
+                     has_lower ? "a lower" : "an upper", name, has_lower ? '>' : '<',
+                     has_lower ? estimate.low_95 : estimate.high_95);
 }
 
 double misfit(const AgeingLeastSquares& fit, std::size_t curve) {
   const LogCurves& curves = fit.curves();
   const auto first = static_cast<Eigen::Index>(curves.first[curve]);
   const auto n = static_cast<Eigen::Index>(curves.first[curve + 1]) - first;
-  const Eigen::ArrayXd off = fit.residuals(fit.best()).segment(first, n).array().exp() - 1;
-  return std::sqrt(off.square().mean());
+  const Eigen::ArrayXd misfit = fit.residuals(fit.best()).segment(first, n).array().exp() - 1;
+  return std::sqrt(misfit.square().mean());
 }
 
 AgeingLaw law_of(const AgeingLeastSquares& fit, std::size_t curve, LogEstimate a_inf,
@@ -202,11 +203,11 @@ AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) 
   fits.scaled_error.assign(n * grid.lags.size(), not_a_number);
   const std::vector<std::uint32_t> complete = complete_realizations(rows);
   fits.realizations = complete.size();
-  const auto say = [&](const std::string& why) {
-    fits.ageing = fits.fluctuations = fits.collapse = cannot_decide(why);
-    fits.a_scaling = fits.v_scaling = cannot_scale(why);
+  const auto say = [&](const std::string& reason) {
+    fits.ageing = fits.fluctuations = fits.collapse = cannot_decide(reason);
+    fits.a_scaling = fits.v_scaling = cannot_scale(reason);
     for (std::vector<AgeingLaw>* laws : {&fits.own, &fits.shared}) {
-      for (AgeingLaw& law : *laws) law.verdict = why;
+      for (AgeingLaw& law : *laws) law.verdict = reason;
     }
   };
   if (complete.size() < 3) {
@@ -221,7 +222,7 @@ AgeingFits fit_ageing(const TapRows& rows, const AgeingGrid& grid, int threads) 
   const LogCurves curves = log_curves(rows, grid, complete);
   if (curves.size() == 0) return fits;
   for_each(threads, curves.size(), [&](std::size_t curve) {
-    fits.own[curves.waiting_times[curve]] = own_law(curves.one(curve));
+    fits.own[curves.waiting_times[curve]] = own_law(curves.single(curve));
   });
   fits.ageing = trend_with_age(curves, "A");
   fits.a_scaling = time_scaling(curves, grid, "A");

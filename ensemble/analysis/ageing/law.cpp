@@ -34,8 +34,8 @@ Eigen::MatrixXd without_column(const Eigen::MatrixXd& matrix, std::size_t column
 
 }  // namespace
 
-Eigen::VectorXd beyond_others(const Eigen::VectorXd& column, const Eigen::MatrixXd& others) {
-  return column - others * least_squares(others, column);
+Eigen::VectorXd beyond_others(const Eigen::VectorXd& column, const Eigen::MatrixXd& other_columns) {
+  return column - other_columns * least_squares(other_columns, column);
 }
 
 double ln_eq_6(double lag, double ln_b, double ln_tau) {
@@ -63,11 +63,11 @@ void AgeingLeastSquares::fill_cells() {
     }
     for (std::size_t b = 0; b < ln_b_.size(); ++b) {
       const Eigen::ArrayXd x = std::exp(ln_b_[b]) * logarithm;
-      const Eigen::ArrayXd off = curves_.ln_a.array() - (x / (1 + x)).log();
+      const Eigen::ArrayXd residual = curves_.ln_a.array() - (x / (1 + x)).log();
       for (std::size_t k = 0; k < curves_.size(); ++k) {
         const auto first = static_cast<Eigen::Index>(curves_.first[k]);
         const auto own =
-            off.segment(first, static_cast<Eigen::Index>(curves_.first[k + 1]) - first);
+            residual.segment(first, static_cast<Eigen::Index>(curves_.first[k + 1]) - first);
         const double mean = own.mean();
         cells_[(k * ln_b_.size() + b) * ln_tau_.size() + tau] = {mean, (own - mean).square().sum()};
       }
@@ -121,33 +121,33 @@ Eigen::VectorXd AgeingLeastSquares::on_grid(std::optional<std::size_t> held, dou
     }
     if (cost < least) least = cost, best_b = i;
   }
-  Eigen::VectorXd at(static_cast<Eigen::Index>(b() + 1));
-  at[static_cast<Eigen::Index>(b())] = ln_b_[best_b];
+  Eigen::VectorXd parameters(static_cast<Eigen::Index>(b() + 1));
+  parameters[static_cast<Eigen::Index>(b())] = ln_b_[best_b];
   for (std::size_t k = 0; k < curves_.size(); ++k) {
     const std::size_t i = k == own ? own_tau(best_b).first : best_tau_[k][best_b];
-    at[static_cast<Eigen::Index>(tau(k))] = ln_tau_[i];
-    at[static_cast<Eigen::Index>(a_inf(k))] = cell(k, best_b, i).mean;
+    parameters[static_cast<Eigen::Index>(tau(k))] = ln_tau_[i];
+    parameters[static_cast<Eigen::Index>(a_inf(k))] = cell(k, best_b, i).mean;
   }
-  if (held) at[static_cast<Eigen::Index>(*held)] = value;
-  return at;
+  if (held) parameters[static_cast<Eigen::Index>(*held)] = value;
+  return parameters;
 }
 
-Eigen::VectorXd AgeingLeastSquares::refined(Eigen::VectorXd at,
+Eigen::VectorXd AgeingLeastSquares::refined(Eigen::VectorXd parameters,
                                             std::optional<std::size_t> held) const {
   const auto low = [&](std::size_t j) { return j == b() ? ln_b_.front() : ln_tau_.front(); };
   const auto high = [&](std::size_t j) { return j == b() ? ln_b_.back() : ln_tau_.back(); };
-  Eigen::VectorXd off = residuals(at);
+  Eigen::VectorXd residual = residuals(parameters);
   for (int i = 0; i < 20; ++i) {
-    const Eigen::MatrixXd j = slopes(at);
-    Eigen::VectorXd change = Eigen::VectorXd::Zero(at.size());
+    const Eigen::MatrixXd j = slopes(parameters);
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(parameters.size());
     if (held) {
-      const Eigen::VectorXd others = least_squares(without_column(j, *held), off);
+      const Eigen::VectorXd other_columns = least_squares(without_column(j, *held), residual);
       const auto h = static_cast<Eigen::Index>(*held);
-      change << others.head(h), 0, others.tail(others.size() - h);
+      change << other_columns.head(h), 0, other_columns.tail(other_columns.size() - h);
     } else {
-      change = least_squares(j, off);
+      change = least_squares(j, residual);
     }
-    Eigen::VectorXd next = at;
+    Eigen::VectorXd next = parameters;
     for (std::size_t p = 0; p <= b(); ++p) {
       const auto index = static_cast<Eigen::Index>(p);
       const bool is_a_inf = p != b() && p % 2 == 0;
@@ -155,13 +155,13 @@ Eigen::VectorXd AgeingLeastSquares::refined(Eigen::VectorXd at,
       if (!is_a_inf && held != p) next[index] = std::clamp(next[index], low(p), high(p));
     }
     const Eigen::VectorXd next_off = residuals(next);
-    const double before = off.squaredNorm(), after = next_off.squaredNorm();
-    if (!(after < before)) break;
-    at = next;
-    off = next_off;
-    if (after > before * (1 - 1e-9)) break;
+    const double cost = residual.squaredNorm(), next_cost = next_off.squaredNorm();
+    if (!(next_cost < cost)) break;
+    parameters = next;
+    residual = next_off;
+    if (next_cost > cost * (1 - 1e-9)) break;
   }
-  return at;
+  return parameters;
 }
 
 bool AgeingLeastSquares::describes_curves() const {
@@ -177,12 +177,12 @@ bool AgeingLeastSquares::describes_curves() const {
   return b_is_held() || !falls_on(b());
 }
 
-Eigen::MatrixXd AgeingLeastSquares::slopes(const Eigen::VectorXd& at) const {
+Eigen::MatrixXd AgeingLeastSquares::slopes(const Eigen::VectorXd& parameters) const {
   Eigen::MatrixXd all =
       Eigen::MatrixXd::Zero(curves_.ln_a.size(), static_cast<Eigen::Index>(b() + 1));
-  const double b_here = std::exp(at[static_cast<Eigen::Index>(b())]);
+  const double b_here = std::exp(parameters[static_cast<Eigen::Index>(b())]);
   for (std::size_t k = 0; k < curves_.size(); ++k) {
-    const double rate = std::exp(-at[static_cast<Eigen::Index>(tau(k))]);
+    const double rate = std::exp(-parameters[static_cast<Eigen::Index>(tau(k))]);
     for (std::size_t i = curves_.first[k]; i < curves_.first[k + 1]; ++i) {
       // ln A = ln A_inf + ln x - ln(1 + x), x = B ln(1 + t / tau).
       const auto row = static_cast<Eigen::Index>(i);
@@ -196,30 +196,30 @@ Eigen::MatrixXd AgeingLeastSquares::slopes(const Eigen::VectorXd& at) const {
   return all;
 }
 
-Eigen::VectorXd AgeingLeastSquares::residuals(const Eigen::VectorXd& at) const {
-  Eigen::VectorXd off = curves_.ln_a;
+Eigen::VectorXd AgeingLeastSquares::residuals(const Eigen::VectorXd& parameters) const {
+  Eigen::VectorXd residual = curves_.ln_a;
   for (std::size_t k = 0; k < curves_.size(); ++k) {
     for (std::size_t i = curves_.first[k]; i < curves_.first[k + 1]; ++i) {
-      off[static_cast<Eigen::Index>(i)] -=
-          at[static_cast<Eigen::Index>(a_inf(k))] + ln_eq_6(curves_.lags[i],
-                                                            at[static_cast<Eigen::Index>(b())],
-                                                            at[static_cast<Eigen::Index>(tau(k))]);
+      residual[static_cast<Eigen::Index>(i)] -=
+          parameters[static_cast<Eigen::Index>(a_inf(k))] +
+          ln_eq_6(curves_.lags[i], parameters[static_cast<Eigen::Index>(b())],
+                  parameters[static_cast<Eigen::Index>(tau(k))]);
     }
   }
-  return off;
+  return residual;
 }
 
 Eigen::VectorXd AgeingLeastSquares::weights_of(std::size_t parameter,
-                                               const Eigen::VectorXd& at) const {
-  const Eigen::MatrixXd all = slopes(at);
+                                               const Eigen::VectorXd& parameters) const {
+  const Eigen::MatrixXd all = slopes(parameters);
   return beyond_others(all.col(static_cast<Eigen::Index>(parameter)),
                        without_column(all, parameter));
 }
 
 double AgeingLeastSquares::t_of(std::size_t parameter, double value) const {
-  const Eigen::VectorXd at = refined(on_grid(parameter, value), parameter);
-  const Eigen::VectorXd weights = weights_of(parameter, at);
-  return weights.dot(residuals(at)) / error_of_sum(curves_, weights).error;
+  const Eigen::VectorXd parameters = refined(on_grid(parameter, value), parameter);
+  const Eigen::VectorXd weights = weights_of(parameter, parameters);
+  return weights.dot(residuals(parameters)) / error_of_sum(curves_, weights).error;
 }
 
 LogEstimate AgeingLeastSquares::estimate(std::size_t parameter) const {

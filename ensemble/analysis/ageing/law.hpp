@@ -44,9 +44,9 @@ class AgeingLeastSquares {
   LogEstimate estimate(std::size_t parameter) const;
 
   /// d ln A / d parameter: [n_points, n_parameters], 0 for a B that is held.
-  Eigen::MatrixXd slopes(const Eigen::VectorXd& at) const;
+  Eigen::MatrixXd slopes(const Eigen::VectorXd& parameters) const;
   /// ln A less the law's.
-  Eigen::VectorXd residuals(const Eigen::VectorXd& at) const;
+  Eigen::VectorXd residuals(const Eigen::VectorXd& parameters) const;
 
  private:
   /// The shape of eq. 6 at one place of the grid against one curve.
@@ -57,10 +57,10 @@ class AgeingLeastSquares {
   void fill_cells();
   /// The best place of the grid, with one parameter held (or none).
   Eigen::VectorXd on_grid(std::optional<std::size_t> held, double value) const;
-  Eigen::VectorXd refined(Eigen::VectorXd at, std::optional<std::size_t> held) const;
+  Eigen::VectorXd refined(Eigen::VectorXd parameters, std::optional<std::size_t> held) const;
   bool describes_curves() const;
   /// For the points in the slope of the squares along a parameter, the others fitted.
-  Eigen::VectorXd weights_of(std::size_t parameter, const Eigen::VectorXd& at) const;
+  Eigen::VectorXd weights_of(std::size_t parameter, const Eigen::VectorXd& parameters) const;
   /// Student's t of a value of a parameter.
   double t_of(std::size_t parameter, double value) const;
 
@@ -74,6 +74,6 @@ class AgeingLeastSquares {
 
 /// For the values that a column takes beyond what the other columns make up for: residuals of its
 /// least squares on them.
-Eigen::VectorXd beyond_others(const Eigen::VectorXd& column, const Eigen::MatrixXd& others);
+Eigen::VectorXd beyond_others(const Eigen::VectorXd& column, const Eigen::MatrixXd& other_columns);
 
 }  // namespace jostle::inline ensemble

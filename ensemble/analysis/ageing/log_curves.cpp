@@ -10,12 +10,12 @@ namespace jostle::inline ensemble {
 namespace {
 
 struct Logarithms {
-  double here;
+  double logarithm;
   std::vector<double> without_one;
 };
 
-Logarithms logarithms(const std::vector<double>& changes, Changes of) {
-  if (of == Changes::variance) {
+Logarithms logarithms(const std::vector<double>& changes, Changes kind) {
+  if (kind == Changes::variance) {
     return {std::log(variance(changes)), ln_variances_without_one(changes)};
   }
   std::vector<double> squares;
@@ -28,13 +28,15 @@ Logarithms logarithms(const std::vector<double>& changes, Changes of) {
 }
 
 // Nothing where the series does not have both taps, or too few realizations change.
-std::optional<Logarithms> change_over(const TapRows& rows, std::uint64_t from, std::uint64_t lag,
-                                      const std::vector<std::uint32_t>& realizations, Changes of) {
-  const std::span<const double> early = rows.row(from), late = rows.row(from + lag);
+std::optional<Logarithms> change_over(const TapRows& rows, std::uint64_t waiting_time,
+                                      std::uint64_t lag,
+                                      const std::vector<std::uint32_t>& realizations,
+                                      Changes kind) {
+  const std::span<const double> early = rows.row(waiting_time), late = rows.row(waiting_time + lag);
   if (early.empty() || late.empty()) return std::nullopt;
   std::vector<double> changes;
   for (const std::uint32_t r : realizations) changes.push_back(late[r] - early[r]);
-  Logarithms found = logarithms(changes, of);
+  Logarithms found = logarithms(changes, kind);
   if (found.without_one.empty() ||
       !std::ranges::all_of(found.without_one, [](double x) { return std::isfinite(x); }))
     return std::nullopt;
@@ -45,21 +47,21 @@ std::optional<Logarithms> change_over(const TapRows& rows, std::uint64_t from, s
 
 std::size_t lags_of_curve(const TapRows& rows, const AgeingGrid& grid,
                           const std::vector<std::uint32_t>& realizations, std::size_t waiting_time,
-                          Changes of) {
+                          Changes kind) {
   return static_cast<std::size_t>(std::ranges::count_if(grid.lags, [&](std::uint64_t lag) {
-    return change_over(rows, grid.waiting_times[waiting_time], lag, realizations, of).has_value();
+    return change_over(rows, grid.waiting_times[waiting_time], lag, realizations, kind).has_value();
   }));
 }
 
-LogCurves LogCurves::one(std::size_t curve) const {
-  const auto from = static_cast<std::ptrdiff_t>(first[curve]);
-  const auto to = static_cast<std::ptrdiff_t>(first[curve + 1]);
+LogCurves LogCurves::single(std::size_t curve) const {
+  const auto begin = static_cast<std::ptrdiff_t>(first[curve]);
+  const auto end = static_cast<std::ptrdiff_t>(first[curve + 1]);
   return {{waiting_times[curve]},
           {0, first[curve + 1] - first[curve]},
-          {lag_indices.begin() + from, lag_indices.begin() + to},
-          {lags.begin() + from, lags.begin() + to},
-          ln_a.segment(from, to - from),
-          influences.middleRows(from, to - from)};
+          {lag_indices.begin() + begin, lag_indices.begin() + end},
+          {lags.begin() + begin, lags.begin() + end},
+          ln_a.segment(begin, end - begin),
+          influences.middleRows(begin, end - begin)};
 }
 
 ErrorOf error_of_sum(const LogCurves& curves, const Eigen::VectorXd& weights) {
@@ -69,22 +71,22 @@ ErrorOf error_of_sum(const LogCurves& curves, const Eigen::VectorXd& weights) {
 }
 
 LogCurves log_curves(const TapRows& rows, const AgeingGrid& grid,
-                     const std::vector<std::uint32_t>& realizations, Changes of) {
+                     const std::vector<std::uint32_t>& realizations, Changes kind) {
   LogCurves curves;
   curves.first = {0};
   const std::size_t m = realizations.size();
   std::vector<double> ln_a, influences;
   for (std::size_t k = 0; k < grid.waiting_times.size(); ++k) {
     for (std::size_t j = 0; j < grid.lags.size(); ++j) {
-      const auto found = change_over(rows, grid.waiting_times[k], grid.lags[j], realizations, of);
+      const auto found = change_over(rows, grid.waiting_times[k], grid.lags[j], realizations, kind);
       if (!found) continue;
-      const auto& [here, without] = *found;
+      const auto& [logarithm, left_out] = *found;
       curves.lag_indices.push_back(j);
       curves.lags.push_back(static_cast<double>(grid.lags[j]));
-      ln_a.push_back(here);
+      ln_a.push_back(logarithm);
       double mean = 0;
-      for (const double x : without) mean += x / static_cast<double>(m);
-      for (const double x : without) influences.push_back(static_cast<double>(m - 1) * (mean - x));
+      for (const double x : left_out) mean += x / static_cast<double>(m);
+      for (const double x : left_out) influences.push_back(static_cast<double>(m - 1) * (mean - x));
     }
     const std::size_t first = curves.first.back();
     if (curves.lags.size() - first >= fewest_lags) {

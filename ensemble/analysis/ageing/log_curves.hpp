@@ -20,7 +20,7 @@ struct LogCurves {
   Eigen::MatrixXd influences;
 
   std::size_t size() const { return waiting_times.size(); }
-  LogCurves one(std::size_t curve) const;
+  LogCurves single(std::size_t curve) const;
 };
 
 /// Quantity of a curve at equal lag: mean squares of changes, A, or their variance, V
@@ -33,13 +33,13 @@ inline constexpr std::size_t fewest_lags = 4;
 /// Number of lags over which two realizations or more change from a waiting time on, by its index.
 std::size_t lags_of_curve(const TapRows& rows, const AgeingGrid& grid,
                           const std::vector<std::uint32_t>& realizations, std::size_t waiting_time,
-                          Changes of = Changes::mean_square);
+                          Changes kind = Changes::mean_square);
 
 /// For some realizations without a gap: the waiting times with enough lags for a law, without the
 /// lags over which fewer than two realizations change.
 LogCurves log_curves(const TapRows& rows, const AgeingGrid& grid,
                      const std::vector<std::uint32_t>& realizations,
-                     Changes of = Changes::mean_square);
+                     Changes kind = Changes::mean_square);
 
 /// Standard error of the sum over points of weights times ln A, by the jackknife over realizations.
 ErrorOf error_of_sum(const LogCurves& curves, const Eigen::VectorXd& weights);

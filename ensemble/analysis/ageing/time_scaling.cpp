@@ -92,9 +92,9 @@ Eigen::VectorXd ln_lags(const LogCurves& curves) {
 /// Residual of a column after projection on the others, [n_points]; nothing where that is rounding:
 /// where curves do not overlap, or have no more points than the function has parameters.
 std::optional<Eigen::VectorXd> weights_beyond(const Eigen::VectorXd& column,
-                                              const Eigen::MatrixXd& others) {
+                                              const Eigen::MatrixXd& other_columns) {
   constexpr double rounding = 1e-9;
-  Eigen::VectorXd weights = beyond_others(column, others);
+  Eigen::VectorXd weights = beyond_others(column, other_columns);
   if (!(weights.norm() > rounding * column.norm())) return std::nullopt;
   return weights;
 }
@@ -140,7 +140,7 @@ class PowerOfAge {
     for (int i = 0; i <= std::lround((most_mu - least_mu) / mu_step); ++i) {
       values_.push_back(least_mu + mu_step * i);
     }
-    const auto squares = [&](double mu) { return at(mu).residuals.squaredNorm(); };
+    const auto squares = [&](double mu) { return curve_at(mu).residuals.squaredNorm(); };
     const double near = *std::ranges::min_element(values_, {}, squares);
     double low = std::max(near - mu_step, least_mu), high = std::min(near + mu_step, most_mu);
     while (high - low > 1e-4) {
@@ -156,13 +156,13 @@ class PowerOfAge {
 
   double best() const { return best_; }
   const std::vector<double>& values() const { return values_; }
-  SmoothCurve at(double mu) const { return {curves_, ln_t_ - mu * ln_age_, scales_}; }
+  SmoothCurve curve_at(double mu) const { return {curves_, ln_t_ - mu * ln_age_, scales_}; }
   /// The derivative by mu.
   Eigen::VectorXd by_mu(const SmoothCurve& curve) const {
     return -curve.slope.cwiseProduct(ln_age_);
   }
   double t_of(double mu) const {
-    const SmoothCurve curve = at(mu);
+    const SmoothCurve curve = curve_at(mu);
     const auto weights = weights_beyond(by_mu(curve), curve.basis);
     if (!weights) return 0;  // nothing there refutes it
     return weights->dot(curve.residuals) / error_of_sum(curves_, *weights).error;
@@ -178,11 +178,11 @@ class PowerOfAge {
 
 AgeTrend scale_that_ages(const Ages& ages, const PowerOfAge& power, const TestedChange& words) {
   const Eigen::VectorXd places = places_of(ages.curves);
-  const SmoothCurve best = power.at(power.best());
+  const SmoothCurve best = power.curve_at(power.best());
   const Eigen::Index n_scales = best.scale.size(), n = best.basis.cols() - n_scales;
-  Eigen::MatrixXd others(places.size(), n + 1);
-  others << best.basis.leftCols(n), power.by_mu(best);
-  const auto weights = weights_beyond(places, others);
+  Eigen::MatrixXd other_columns(places.size(), n + 1);
+  other_columns << best.basis.leftCols(n), power.by_mu(best);
+  const auto weights = weights_beyond(places, other_columns);
   if (!weights) return cannot_decide("the curves do not overlap");
   return tested_change(ages.curves, *weights,
                        n_scales == 0 ? best.residuals : best.residuals + best.scale[0] * places,
@@ -196,11 +196,11 @@ std::string words(const AgeingExponent& found) {
     return finite_text("mu has only {} limit: mu {} {:.2g} (95 %)", low ? "a lower" : "an upper",
                        low ? '>' : '<', low ? found.low_95 : found.high_95);
   }
-  const auto of = [&](double mu) {
+  const auto misfit_of = [&](double mu) {
     return found.low_95 <= mu && mu <= found.high_95 ? "not refuted" : "refuted";
   };
   return finite_text("mu is {:.2f} to {:.2f} (95 %), no ageing (0) {}, full ageing (1) {}",
-                     found.low_95, found.high_95, of(0), of(1));
+                     found.low_95, found.high_95, misfit_of(0), misfit_of(1));
 }
 
 AgeingExponent no_exponent(const AgeTrend& collapse) {
@@ -238,7 +238,7 @@ AgeingExponent ageing_exponent(const LogCurves& all,
   const AgeTrend collapse =
       agreed(about_mu, beside_mu, static_cast<std::size_t>(curves.influences.cols()), change);
   if (about_mu.p < refuted || beside_mu.p < refuted) return no_exponent(collapse);
-  const SmoothCurve best = power.at(power.best());
+  const SmoothCurve best = power.curve_at(power.best());
   const auto weights = weights_beyond(power.by_mu(best), best.basis);
   if (!weights) return no_exponent(cannot_decide("the curves do not constrain mu"));
   const ErrorOf error = error_of_sum(curves, *weights / weights->squaredNorm());
@@ -272,8 +272,8 @@ AgeTrend logarithmic_collapse(const LogCurves& all, const std::vector<std::uint6
       {"ln(1 + t/t_W)/ln t_W at equal " + name, "collapse refuted", "collapse not refuted"});
 }
 
-TimeScaling cannot_scale(const std::string& why) {
-  return {no_exponent(cannot_decide(why)), cannot_decide(why)};
+TimeScaling cannot_scale(const std::string& reason) {
+  return {no_exponent(cannot_decide(reason)), cannot_decide(reason)};
 }
 
 TimeScaling time_scaling(const LogCurves& curves, const AgeingGrid& grid, const std::string& name) {

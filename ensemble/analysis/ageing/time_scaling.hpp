@@ -46,7 +46,7 @@ struct TimeScaling {
 };
 
 /// No numbers, and both verdicts "cannot decide: WHY".
-TimeScaling cannot_scale(const std::string& why);
+TimeScaling cannot_scale(const std::string& reason);
 /// Both, of the curves of the grid's waiting times; `name`: of A in words.
 TimeScaling time_scaling(const LogCurves& curves, const AgeingGrid& grid, const std::string& name);
 

@@ -33,17 +33,17 @@ AgeTrend trend(const LogCurves& curves, const Eigen::VectorXd& weights,
 }
 
 // "p = 0.3; a factor of 4 would be found with power 0.8".
-std::string power_of(const AgeTrend& found, const std::string& of) {
+std::string power_of(const AgeTrend& found, const std::string& symbol) {
   if (std::isnan(found.p))
     return fmt::format(
         "change of {} from the first waiting time to the last: no test, its error "
         "is not known",
-        of);
+        symbol);
   const std::string power =
       std::isnan(found.detectable)
           ? "but its error is beyond all factors: none would be found"
           : finite_text("a factor of {:.3g} would be found with power 0.8", found.detectable);
-  return finite_text("change of {} from the first waiting time to the last: {}, {}", of,
+  return finite_text("change of {} from the first waiting time to the last: {}, {}", symbol,
                      p_text(found.p), power);
 }
 
@@ -54,7 +54,7 @@ bool finds(const AgeTrend& found) {
 
 std::string verdict(const AgeTrend& found, bool is_excluded, std::size_t realizations,
                     const TestedChange& words) {
-  const std::string power = power_of(found, words.of);
+  const std::string power = power_of(found, words.quantity);
   if (finds(found)) return fmt::format("{} ({})", words.changes, power);
   if (is_excluded) return fmt::format("{} ({})", words.does_not, power);
   return fmt::format("cannot decide with {} realizations ({})", realizations, power);
@@ -70,14 +70,14 @@ AgeTrend tested_change(const LogCurves& curves, const Eigen::VectorXd& weights,
   return found;
 }
 
-AgeTrend agreed(const AgeTrend& one, const AgeTrend& other, std::size_t realizations,
+AgeTrend agreed(const AgeTrend& first, const AgeTrend& second, std::size_t realizations,
                 const TestedChange& words) {
-  if (std::isnan(one.p) || std::isnan(other.p)) return std::isnan(one.p) ? one : other;
-  AgeTrend found{no_estimate(), std::max(one.p, other.p), not_a_number, ""};
-  if (!std::isnan(one.detectable) && !std::isnan(other.detectable)) {
-    found.detectable = std::max(one.detectable, other.detectable);
+  if (std::isnan(first.p) || std::isnan(second.p)) return std::isnan(first.p) ? first : second;
+  AgeTrend found{no_estimate(), std::max(first.p, second.p), not_a_number, ""};
+  if (!std::isnan(first.detectable) && !std::isnan(second.detectable)) {
+    found.detectable = std::max(first.detectable, second.detectable);
   }
-  found.verdict = verdict(found, found.detectable <= decisive && !finds(one) && !finds(other),
+  found.verdict = verdict(found, found.detectable <= decisive && !finds(first) && !finds(second),
                           realizations, words);
   return found;
 }
@@ -86,8 +86,8 @@ double place_of(std::size_t curve, const LogCurves& curves) {
   return static_cast<double>(curve) / static_cast<double>(curves.size() - 1) - 0.5;
 }
 
-AgeTrend cannot_decide(const std::string& why) {
-  return {no_estimate(), not_a_number, not_a_number, "cannot decide: " + why};
+AgeTrend cannot_decide(const std::string& reason) {
+  return {no_estimate(), not_a_number, not_a_number, "cannot decide: " + reason};
 }
 
 AgeTrend trend_with_age(const LogCurves& curves, const std::string& name) {

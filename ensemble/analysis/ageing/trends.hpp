@@ -16,11 +16,11 @@ struct AgeTrend {
 };
 
 /// No numbers, and the verdict "cannot decide: WHY".
-AgeTrend cannot_decide(const std::string& why);
+AgeTrend cannot_decide(const std::string& reason);
 
 /// The words of a test.
 struct TestedChange {
-  std::string of;        // "A": what may change
+  std::string quantity;  // "A": what may change
   std::string changes;   // the verdict where it does: "A changes with age"
   std::string does_not;  // and where a factor of ten would have been found
 };
@@ -31,7 +31,7 @@ AgeTrend tested_change(const LogCurves& curves, const Eigen::VectorXd& weights,
 
 /// Returns the result of the stricter of two tests of one change, without a factor; nothing is
 /// decided where only one finds it.
-AgeTrend agreed(const AgeTrend& one, const AgeTrend& other, std::size_t realizations,
+AgeTrend agreed(const AgeTrend& first, const AgeTrend& second, std::size_t realizations,
                 const TestedChange& words);
 
 /// -1/2 for the first waiting time to 1/2 for the last.

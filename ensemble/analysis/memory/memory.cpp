@@ -18,7 +18,8 @@ namespace {
 
 /// The intercept at 0 of a straight line through (x, y), with its error by the scatter about it;
 /// the mean where x is 0 throughout. None where x is one other value.
-void fit_intercept(std::span<const double> x, std::span<const double> y, AlignedDifference& into) {
+void fit_intercept(std::span<const double> x, std::span<const double> y,
+                   AlignedDifference& target) {
   Moments x_all, y_all;
   for (const double value : x) x_all.add(value);
   for (const double value : y) y_all.add(value);
@@ -28,8 +29,8 @@ void fit_intercept(std::span<const double> x, std::span<const double> y, Aligned
   double s_xy = 0, squares = 0;
   for (std::size_t r = 0; r < x.size(); ++r) s_xy += (x[r] - x_all.mean()) * (y[r] - y_all.mean());
   const double slope = varies ? s_xy / s_xx : 0;
-  into.value = y_all.mean() - slope * x_all.mean();
-  if (!varies && x_all.mean() != 0) into.value = std::numeric_limits<double>::quiet_NaN();
+  target.value = y_all.mean() - slope * x_all.mean();
+  if (!varies && x_all.mean() != 0) target.value = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t r = 0; r < x.size(); ++r) {
     const double left = y[r] - y_all.mean() - slope * (x[r] - x_all.mean());
     squares += left * left;
@@ -37,7 +38,7 @@ void fit_intercept(std::span<const double> x, std::span<const double> y, Aligned
   const double dof = n - (varies ? 2 : 1);
   if (!(dof >= 1)) return;
   const double leverage = 1 / n + (varies ? x_all.mean() * x_all.mean() / s_xx : 0);
-  into.error = {std::sqrt(squares / dof * leverage), dof};
+  target.error = {std::sqrt(squares / dof * leverage), dof};
 }
 
 }  // namespace
@@ -66,7 +67,7 @@ MemoryTest memory_test(std::span<const History> histories, std::vector<LagWindow
   test.windows = std::move(windows);
   test.realizations = realizations;
   const auto response = [&](const History& history, std::size_t w, std::size_t r) {
-    return history.after[w * realizations + r] - history.at_switch[r];
+    return history.responses[w * realizations + r] - history.at_switch[r];
   };
   for (const History& history : histories) test.strengths.push_back(history.strength);
   for (std::size_t i = 0; i < histories.size(); ++i) {
@@ -126,13 +127,13 @@ std::string MemoryTest::statement(const std::string& observable, const std::stri
   };
   const AlignedDifference& found = *std::ranges::min_element(differences, {}, key);
   if (found.corrected < level) {
-    const LagWindow& at = windows[found.window];
+    const LagWindow& window = windows[found.window];
     return finite_text(
         "{} alone is not the state: after {} {} and {} responses differ by {:+.2g} +- {:.1g} "
         "(68 %) at lags {} to {} (p = {:.2g}, {} tests together, {} realizations)",
         observable, control, name_of(found.first), name_of(found.second), found.value,
         student_half_width(found.error.error, static_cast<std::size_t>(found.error.dof) + 1),
-        at.first, at.last, found.corrected, differences.size(), realizations);
+        window.first, window.last, found.corrected, differences.size(), realizations);
   }
   const AlignedDifference& unseen =
       *std::ranges::max_element(differences, {}, &AlignedDifference::detectable);

@@ -31,7 +31,7 @@ struct History {
   double strength = 0;            // strength of the last taps before the switch
   std::uint64_t switch_tap = 0;   // the last of them
   std::vector<double> at_switch;  // [realizations]
-  std::vector<double> after;      // [n_windows, realizations]
+  std::vector<double> responses;  // [n_windows, realizations]
 };
 
 /// Difference of two histories after the switch, at equal values at the switch.

@@ -44,7 +44,7 @@ class TableOf {
 
 void add_histories(const Column& observable, const std::string& control, const std::string& units,
                    std::span<const History> histories, const MemoryTest& test, Table& table) {
-  TableOf out(table);
+  TableOf columns(table);
   std::vector<std::uint64_t> index, taps;
   std::vector<double> strengths;
   Columns at_switch, response;
@@ -55,23 +55,25 @@ void add_histories(const Column& observable, const std::string& control, const s
     at_switch.add(history.at_switch);
     const std::size_t n = history.at_switch.size();
     for (std::size_t w = 0; w < test.windows.size(); ++w) {
-      std::vector<double> change(history.after.begin() + static_cast<std::ptrdiff_t>(w * n),
-                                 history.after.begin() + static_cast<std::ptrdiff_t>((w + 1) * n));
+      std::vector<double> change(
+          history.responses.begin() + static_cast<std::ptrdiff_t>(w * n),
+          history.responses.begin() + static_cast<std::ptrdiff_t>((w + 1) * n));
       for (std::size_t r = 0; r < n; ++r) change[r] -= history.at_switch[r];
       response.add(change);
     }
   }
   table.axes.push_back({"history", {"history"}, index, "1", "way of reaching the value", ""});
-  out.add(control, {"history"}, strengths, units, "strength of the taps before the switch");
-  out.add("switch_tap", {"history"}, taps, "taps", "last tap before the switch");
-  out.add("at_switch", {"history"}, at_switch, observable.units, observable.long_name + " there");
-  out.add("response", {"history", "lag_window"}, response, observable.units,
-          "mean over the lags less the value at the switch", josserand);
+  columns.add(control, {"history"}, strengths, units, "strength of the taps before the switch");
+  columns.add("switch_tap", {"history"}, taps, "taps", "last tap before the switch");
+  columns.add("at_switch", {"history"}, at_switch, observable.units,
+              observable.long_name + " there");
+  columns.add("response", {"history", "lag_window"}, response, observable.units,
+              "mean over the lags less the value at the switch", josserand);
 }
 
 void add_differences(const Column& observable, const std::string& control, const std::string& units,
                      const MemoryTest& test, Table& table) {
-  TableOf out(table);
+  TableOf columns(table);
   std::vector<std::uint64_t> pair, first, second;
   std::vector<double> value, error, dof, p, corrected, detectable, first_strength, second_strength;
   for (const AlignedDifference& found : test.differences) {
@@ -91,21 +93,23 @@ void add_differences(const Column& observable, const std::string& control, const
                              ? found.detectable
                              : std::numeric_limits<double>::quiet_NaN());
   }
-  const std::vector<std::string> both = {"pair", "lag_window"};
+  const std::vector<std::string> axes = {"pair", "lag_window"};
   table.axes.push_back({"pair", {"pair"}, pair, "1", "pair of histories", ""});
-  out.add("first_history", {"pair"}, first, "1", "of the pair");
-  out.add("second_history", {"pair"}, second, "1", "of the pair");
-  out.add("first_" + control, {"pair"}, first_strength, units, "strength of the taps of the first");
-  out.add("second_" + control, {"pair"}, second_strength, units, "of the second");
-  out.add("difference", both, value, observable.units,
-          "of the responses at equal value at the switch, second less first", josserand);
-  out.add("difference_error", both, error, observable.units, "standard error over realizations");
-  out.add("difference_dof", both, dof, "1", "its degrees of freedom");
-  out.add("difference_p", both, p, "1", "of no difference, this one alone, Student's t");
-  out.add("difference_p_corrected", both, corrected, "1",
-          "the same for all together, Holm 1979, Scand. J. Statist. 6, 65");
-  out.add("difference_detectable", both, detectable, observable.units,
-          "that would have been found with probability 0.8");
+  columns.add("first_history", {"pair"}, first, "1", "of the pair");
+  columns.add("second_history", {"pair"}, second, "1", "of the pair");
+  columns.add("first_" + control, {"pair"}, first_strength, units,
+              "strength of the taps of the first");
+  columns.add("second_" + control, {"pair"}, second_strength, units, "of the second");
+  columns.add("difference", axes, value, observable.units,
+              "of the responses at equal value at the switch, second less first", josserand);
+  columns.add("difference_error", axes, error, observable.units,
+              "standard error over realizations");
+  columns.add("difference_dof", axes, dof, "1", "its degrees of freedom");
+  columns.add("difference_p", axes, p, "1", "of no difference, this one alone, Student's t");
+  columns.add("difference_p_corrected", axes, corrected, "1",
+              "the same for all together, Holm 1979, Scand. J. Statist. 6, 65");
+  columns.add("difference_detectable", axes, detectable, observable.units,
+              "that would have been found with probability 0.8");
 }
 
 }  // namespace

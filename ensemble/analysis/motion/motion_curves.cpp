@@ -17,7 +17,7 @@ constexpr MeanEstimate no_mean{not_a_number, not_a_number, 0};
 constexpr std::size_t n_directions = 3, x = 0, y = 1, z = 2;
 
 template <class Value>
-std::vector<double> each(std::size_t n, const Value& value) {
+std::vector<double> by_realization(std::size_t n, const Value& value) {
   std::vector<double> row;
   for (std::size_t r = 0; r < n; ++r) row.push_back(value(r));
   return row;
@@ -25,7 +25,7 @@ std::vector<double> each(std::size_t n, const Value& value) {
 
 /// <x^2> - <x>^2 of each realization, 0 where rounding made it negative; NaN where there is none.
 std::vector<double> about_mean(std::span<const double> square, std::span<const double> mean) {
-  return each(mean.size(), [&](std::size_t r) {
+  return by_realization(mean.size(), [&](std::size_t r) {
     const double variance = square[r] - mean[r] * mean[r];
     return variance < 0 ? 0 : variance;
   });
@@ -62,7 +62,7 @@ MeanEstimate non_gaussian(std::span<const double> fourth, std::span<const double
     return seconds > 0 ? m * fourths / (seconds * seconds * gaussian(m)) - 1 : not_a_number;
   };
   const double fourths = sum(moments.first), seconds = sum(moments.second);
-  const std::vector<double> left_out = each(n > 1 ? n : 0, [&](std::size_t r) {
+  const std::vector<double> left_out = by_realization(n > 1 ? n : 0, [&](std::size_t r) {
     return parameter(fourths - moments.first[r], seconds - moments.second[r], n - 1);
   });
   return {parameter(fourths, seconds, n), jackknife_error(left_out),
@@ -82,7 +82,7 @@ std::vector<double> lateral_squares(const MotionRecords& records, std::size_t or
                                     std::size_t lag) {
   const auto along_x = records.row("square_displacement", origin, lag, x),
              along_y = records.row("square_displacement", origin, lag, y);
-  return each(along_x.size(), [&](std::size_t r) { return along_x[r] + along_y[r]; });
+  return by_realization(along_x.size(), [&](std::size_t r) { return along_x[r] + along_y[r]; });
 }
 
 std::vector<double> vertical_squares(const MotionRecords& records, std::size_t origin,
@@ -97,7 +97,7 @@ std::vector<double> layer_lateral_squares(const MotionRecords& records, std::siz
     return records.row("layer_square_displacement", origin, lag, n_directions * layer + direction);
   };
   const auto along_x = row(x), along_y = row(y);
-  return each(along_x.size(), [&](std::size_t r) { return along_x[r] + along_y[r]; });
+  return by_realization(along_x.size(), [&](std::size_t r) { return along_x[r] + along_y[r]; });
 }
 
 std::vector<double> layer_vertical_squares(const MotionRecords& records, std::size_t origin,
@@ -175,14 +175,14 @@ std::vector<double> kind_lateral_squares(const MotionRecords& records, std::size
     return records.row("kind_square_displacement", origin, lag, n_directions * kind + direction);
   };
   const auto along_x = row(x), along_y = row(y);
-  return each(along_x.size(), [&](std::size_t r) { return along_x[r] + along_y[r]; });
+  return by_realization(along_x.size(), [&](std::size_t r) { return along_x[r] + along_y[r]; });
 }
 
 std::vector<double> kind_rise(const MotionRecords& records, std::size_t origin, std::size_t lag,
                               std::size_t kind) {
   const auto kinds = records.row("kind_mean_displacement", origin, lag, n_directions * kind + z),
              bed = records.row("mean_displacement", origin, lag, z);
-  return each(bed.size(), [&](std::size_t r) { return kinds[r] - bed[r]; });
+  return by_realization(bed.size(), [&](std::size_t r) { return kinds[r] - bed[r]; });
 }
 
 std::vector<double> kind_vertical_squares(const MotionRecords& records, std::size_t origin,
@@ -191,7 +191,7 @@ std::vector<double> kind_vertical_squares(const MotionRecords& records, std::siz
   const auto square = records.row("kind_square_displacement", origin, lag, place),
              mean = records.row("kind_mean_displacement", origin, lag, place),
              bed = records.row("mean_displacement", origin, lag, z);
-  return each(bed.size(), [&](std::size_t r) {
+  return by_realization(bed.size(), [&](std::size_t r) {
     const double about_bed = square[r] - (2 * mean[r] - bed[r]) * bed[r];
     return about_bed < 0 ? 0 : about_bed;  // rounding
   });
@@ -216,7 +216,7 @@ MeanEstimate exponent_of(const std::vector<std::uint64_t>& lags, std::size_t lag
   const auto first = ln_means_without_one(squares.first),
              second = ln_means_without_one(squares.second);
   const std::vector<double> left_out =
-      each(first.size(), [&](std::size_t r) { return (second[r] - first[r]) / decades; });
+      by_realization(first.size(), [&](std::size_t r) { return (second[r] - first[r]) / decades; });
   return {slope, jackknife_error(left_out),
           std::max(0.0, static_cast<double>(left_out.size()) - 1)};
 }
@@ -225,13 +225,13 @@ MeanEstimate exponent_of(const std::vector<std::uint64_t>& lags, std::size_t lag
 
 MeanEstimate lateral_exponent(const MotionRecords& records, std::size_t origin, std::size_t lag) {
   return exponent_of(records.settings.lags, lag,
-                     [&](std::size_t at) { return lateral_squares(records, origin, at); });
+                     [&](std::size_t index) { return lateral_squares(records, origin, index); });
 }
 
 MeanEstimate kind_lateral_exponent(const MotionRecords& records, std::size_t origin,
                                    std::size_t lag, std::size_t kind) {
-  return exponent_of(records.settings.lags, lag, [&](std::size_t at) {
-    return kind_lateral_squares(records, origin, at, kind);
+  return exponent_of(records.settings.lags, lag, [&](std::size_t index) {
+    return kind_lateral_squares(records, origin, index, kind);
   });
 }
 
@@ -239,10 +239,11 @@ LogEstimate lateral_ratio(const MotionRecords& records, std::size_t origin, std:
   if (origin == 0) return no_estimate();
   const Pairs squares =
       pairs(lateral_squares(records, origin, lag), lateral_squares(records, 0, lag));
-  const MeanEstimate logarithm = mean_estimate(each(squares.first.size(), [&](std::size_t r) {
-    const double ratio = std::log(squares.first[r] / squares.second[r]);
-    return std::isfinite(ratio) ? ratio : not_a_number;
-  }));
+  const MeanEstimate logarithm =
+      mean_estimate(by_realization(squares.first.size(), [&](std::size_t r) {
+        const double ratio = std::log(squares.first[r] / squares.second[r]);
+        return std::isfinite(ratio) ? ratio : not_a_number;
+      }));
   return log_estimate(std::exp(logarithm.value), {logarithm.error, logarithm.dof});
 }
 

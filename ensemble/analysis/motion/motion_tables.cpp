@@ -50,10 +50,10 @@ class MotionTable {
   void add_means(const Label& label, const Estimate& estimate) {
     std::vector<double> values, errors, dof;
     for_all([&](std::size_t o, std::size_t l, std::size_t place) {
-      const MeanEstimate one = estimate(o, l, place);
-      values.push_back(one.value);
-      errors.push_back(one.error);
-      dof.push_back(one.dof);
+      const MeanEstimate mean = estimate(o, l, place);
+      values.push_back(mean.value);
+      errors.push_back(mean.error);
+      dof.push_back(mean.dof);
     });
     add(label, std::move(values));
     add({label.name + "_error", label.units, "standard error over realizations", ""},
@@ -67,7 +67,7 @@ class MotionTable {
   }
 
   template <class Estimate>
-  void add_intervals(const Label& label, const char* of, const Estimate& estimate) {
+  void add_intervals(const Label& label, const char* symbol, const Estimate& estimate) {
     constexpr std::pair<const char*, double LogEstimate::*> fields[] = {
         {"_low_68", &LogEstimate::low_68},
         {"_high_68", &LogEstimate::high_68},
@@ -79,13 +79,13 @@ class MotionTable {
     });
     const auto values = [&](double LogEstimate::*field) {
       std::vector<double> all;
-      for (const LogEstimate& one : estimates) all.push_back(one.*field);
+      for (const LogEstimate& log_estimate : estimates) all.push_back(log_estimate.*field);
       return all;
     };
     add(label, values(&LogEstimate::value));
     add({label.name + "_error", label.units, "standard error", ""}, values(&LogEstimate::error));
     for (const auto& [ending, field] : fields)
-      add({label.name + ending, label.units, of, ""}, values(field));
+      add({label.name + ending, label.units, symbol, ""}, values(field));
   }
 
   void add_count() {
@@ -227,7 +227,7 @@ Table overlap_table(const std::string& prefix, const MotionRecords& records) {
   table.add_places("overlap_length", records.settings.overlap_lengths, "diameter",
                    "largest displacement a");
   struct Kind {
-    const char *row, *of, *chi_4, *of_chi_4, *independent, *of_layers;
+    const char *row, *row_text, *chi_4, *of_chi_4, *independent, *of_layers;
   };
   constexpr Kind kinds[] = {
       {"lateral_overlap", "fraction of spheres that moved less than a sideways", "lateral_chi_4",
@@ -240,7 +240,7 @@ Table overlap_table(const std::string& prefix, const MotionRecords& records) {
       return records.row(kind.row, o, l, length);
     };
     table.add_means_of(
-        {kind.row, "1", kind.of, four_point},
+        {kind.row, "1", kind.row_text, four_point},
         [&](std::size_t o, std::size_t l, std::size_t length) { return copy(row(o, l, length)); });
     table.add_intervals({kind.chi_4, "1", kind.of_chi_4, four_point},
                         "end of the interval, chi2 of normal overlaps",

@@ -16,9 +16,9 @@ namespace {
 constexpr const char* hsu = "multiple comparisons with the best, Hsu 1996";
 
 std::vector<std::string> words(const std::vector<bool>& flags) {
-  std::vector<std::string> out;
-  for (const bool flag : flags) out.emplace_back(flag ? "yes" : "no");
-  return out;
+  std::vector<std::string> result;
+  for (const bool flag : flags) result.emplace_back(flag ? "yes" : "no");
+  return result;
 }
 
 std::string labels_of(const std::vector<OrderingPoint>& points, const std::vector<bool>& chosen) {
@@ -45,8 +45,8 @@ std::string steady_word(const OrderingPoint& point) {
 
 // True if realizations order at equal taps, in any order of realizations.
 bool same_times(std::vector<OrderingTime> a, std::vector<OrderingTime> b) {
-  const auto earlier = [](const OrderingTime& one, const OrderingTime& other) {
-    return std::pair(one.tap, one.ordered) < std::pair(other.tap, other.ordered);
+  const auto earlier = [](const OrderingTime& first, const OrderingTime& second) {
+    return std::pair(first.tap, first.ordered) < std::pair(second.tap, second.ordered);
   };
   std::ranges::sort(a, earlier);
   std::ranges::sort(b, earlier);
@@ -97,16 +97,16 @@ std::string verdict(const std::vector<OrderingPoint>& points, bool any, const Ca
                     const Candidates& largest) {
   if (!any || !first.could_decide || !largest.could_decide)
     return "cannot decide whether the points that order first and that end highest are one";
-  std::vector<bool> both(points.size());
-  bool one = false;
+  std::vector<bool> ordered(points.size());
+  bool any_ordered = false;
   for (std::size_t k = 0; k < points.size(); ++k) {
-    both[k] = first.may_be[k] && largest.may_be[k];
-    one = one || both[k];
+    ordered[k] = first.may_be[k] && largest.may_be[k];
+    any_ordered = any_ordered || ordered[k];
   }
   std::vector<bool> unshown(points.size());
   for (std::size_t k = 0; k < points.size(); ++k) unshown[k] = points[k].steady != Verdict::reached;
   const std::string not_shown = labels_of(points, unshown);
-  if (!one) {
+  if (!any_ordered) {
     return fmt::format(
         "the point that orders first is not the one with the largest value over the last taps "
         "(p < 0.05){}",
@@ -116,13 +116,13 @@ std::string verdict(const std::vector<OrderingPoint>& points, bool any, const Ca
     return std::ranges::count(flags, true) == 1;
   };
   if (only(first.may_be) && only(largest.may_be)) {
-    return labels_of(points, both) +
+    return labels_of(points, ordered) +
            " orders first and has the largest value over the last taps (no other point may)";
   }
   return fmt::format(
       "undecided whether one point orders first and has the largest value over the last taps: {} "
       "{}",
-      only(both) ? "only this point may," : "these points may,", labels_of(points, both));
+      only(ordered) ? "only this point may," : "these points may,", labels_of(points, ordered));
 }
 
 struct Comparison {
@@ -133,7 +133,7 @@ struct Comparison {
 
 void add_columns(Table& table, const std::vector<OrderingPoint>& points, const ComparedValue& value,
                  const Comparison& found) {
-  const std::vector<std::string> along = {"point"};
+  const std::vector<std::string> axes = {"point"};
   std::vector<std::string> labels, steady;
   std::vector<std::uint64_t> realizations, ordered;
   std::vector<double> median, low, high, mean, error, dof;
@@ -152,25 +152,24 @@ void add_columns(Table& table, const std::vector<OrderingPoint>& points, const C
     dof.push_back(found.means[k].error.dof);
     steady.push_back(steady_word(points[k]));
   }
-  table.axes = {{"point", along, labels, "1", "sweep point", ""}};
+  table.axes = {{"point", axes, labels, "1", "sweep point", ""}};
   table.quantities = {
-      {"realizations", along, realizations, "1", "realizations", ""},
-      {"ordered", along, ordered, "1", "of them ordered", ""},
-      {"median_time", along, median, "taps", "by which half have ordered; - where fewer have", ""},
-      {"median_time_low_68", along, low, "taps", "lower end of the 68 % interval", ""},
-      {"median_time_high_68", along, high, "taps", "upper end of the 68 % interval", ""},
-      {"later_p", along, found.first.p, "1",
+      {"realizations", axes, realizations, "1", "realizations", ""},
+      {"ordered", axes, ordered, "1", "of them ordered", ""},
+      {"median_time", axes, median, "taps", "by which half have ordered; - where fewer have", ""},
+      {"median_time_low_68", axes, low, "taps", "lower end of the 68 % interval", ""},
+      {"median_time_high_68", axes, high, "taps", "upper end of the 68 % interval", ""},
+      {"later_p", axes, found.first.p, "1",
        "that chance alone lets another point order so much earlier, all pairs together",
        "log-rank, Peto & Peto 1972, doi:10.2307/2344317"},
-      {"may_order_first", along, words(found.first.may_be), "1", "at 97.5 %", hsu},
-      {"last_value", along, mean, value.units, value.observable + ", mean of the last taps", ""},
-      {"last_value_error", along, error, value.units, "standard error over realizations", ""},
-      {"last_value_dof", along, dof, "1", "its degrees of freedom", ""},
-      {"smaller_p", along, found.largest.p, "1",
+      {"may_order_first", axes, words(found.first.may_be), "1", "at 97.5 %", hsu},
+      {"last_value", axes, mean, value.units, value.observable + ", mean of the last taps", ""},
+      {"last_value_error", axes, error, value.units, "standard error over realizations", ""},
+      {"last_value_dof", axes, dof, "1", "its degrees of freedom", ""},
+      {"smaller_p", axes, found.largest.p, "1",
        "that chance alone lets another point end so much higher, all pairs together", ""},
-      {"may_be_largest", along, words(found.largest.may_be), "1", "at 97.5 %", hsu},
-      {"steady", along, steady, "1", "whether these taps are steady, as jostle analyse steady",
-       ""}};
+      {"may_be_largest", axes, words(found.largest.may_be), "1", "at 97.5 %", hsu},
+      {"steady", axes, steady, "1", "whether these taps are steady, as jostle analyse steady", ""}};
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ double p_of_sharing_out(std::vector<double> scores, std::size_t n_first) {
   ways.add(std::numeric_limits<double>::infinity());  // the observed one
   for (std::size_t way = 1; way < most_ways; ++way) {
     for (std::size_t i = 0; i < n_first; ++i) {
-      std::swap(scores[i], scores[i + random.below(scores.size() - i)]);
+      std::swap(scores[i], scores[i + random.integer_below(scores.size() - i)]);
     }
     ways.add(sum());
   }
@@ -93,7 +93,7 @@ double p_of_signs(std::span<const double> differences) {
   for (std::size_t way = 1; way < most_ways; ++way) {
     double sum = 0;
     for (const double difference : differences)
-      sum += random.below(2) == 0 ? difference : -difference;
+      sum += random.integer_below(2) == 0 ? difference : -difference;
     ways.add(sum);
   }
   return ways.share();
@@ -102,13 +102,13 @@ double p_of_signs(std::span<const double> differences) {
 /// p(i, j): that chance lets i beat j.
 Candidates best_of(std::size_t k, const std::function<double(std::size_t, std::size_t)>& p) {
   Candidates found;
-  const auto others = static_cast<double>(k - 1);
+  const auto n_others = static_cast<double>(k - 1);
   for (std::size_t j = 0; j < k; ++j) {
     double least = 1;
     for (std::size_t i = 0; i < k; ++i) {
       if (i != j) least = std::min(least, p(i, j));
     }
-    found.p.push_back(std::min(1.0, least * others));
+    found.p.push_back(std::min(1.0, least * n_others));
     found.may_be.push_back(found.p.back() > Candidates::level);
   }
   return found;
@@ -116,9 +116,9 @@ Candidates best_of(std::size_t k, const std::function<double(std::size_t, std::s
 
 /// One-sided, of a mean difference above 0.
 double upper_tail(const RealizationMean& difference) {
-  const double both = p_value(difference.value, difference.error);
-  if (std::isnan(both)) return 1;
-  return difference.value > 0 ? 0.5 * both : 1 - 0.5 * both;
+  const double p_of_both = p_value(difference.value, difference.error);
+  if (std::isnan(p_of_both)) return 1;
+  return difference.value > 0 ? 0.5 * p_of_both : 1 - 0.5 * p_of_both;
 }
 
 double p_of_larger(const std::vector<double>& first, const std::vector<double>& second,
@@ -142,14 +142,14 @@ std::vector<double> log_rank_scores(std::span<const OrderingTime> times) {
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return times[i].tap; });
   std::vector<double> scores(times.size());
   double hazard = 0;
-  for (std::size_t from = 0; from < order.size();) {
-    std::size_t end = from, events = 0;
-    for (; end < order.size() && times[order[end]].tap == times[order[from]].tap; ++end) {
+  for (std::size_t begin = 0; begin < order.size();) {
+    std::size_t end = begin, events = 0;
+    for (; end < order.size() && times[order[end]].tap == times[order[begin]].tap; ++end) {
       events += times[order[end]].ordered ? 1 : 0;
     }
-    hazard += static_cast<double>(events) / static_cast<double>(order.size() - from);
-    for (; from < end; ++from) {
-      scores[order[from]] = (times[order[from]].ordered ? 1 : 0) - hazard;
+    hazard += static_cast<double>(events) / static_cast<double>(order.size() - begin);
+    for (; begin < end; ++begin) {
+      scores[order[begin]] = (times[order[begin]].ordered ? 1 : 0) - hazard;
     }
   }
   return scores;
@@ -166,11 +166,11 @@ std::vector<OrderingTime> OrderingTimes::known() const {
 EarlierTest earlier(const OrderingTimes& first, const OrderingTimes& second, Streams streams) {
   const std::uint64_t last = std::min(first.last, second.last);
   std::vector<OrderingTime> times;
-  const auto add = [&](const OrderingTimes& from, const OrderingTimes& other) {
-    for (std::size_t r = 0; r < from.of_realization.size(); ++r) {
-      const bool paired = r < other.of_realization.size() && other.of_realization[r];
-      if (!from.of_realization[r] || (streams == Streams::matched && !paired)) continue;
-      times.push_back(seen_until(*from.of_realization[r], last));
+  const auto add = [&](const OrderingTimes& own, const OrderingTimes& alternative) {
+    for (std::size_t r = 0; r < own.of_realization.size(); ++r) {
+      const bool paired = r < alternative.of_realization.size() && alternative.of_realization[r];
+      if (!own.of_realization[r] || (streams == Streams::matched && !paired)) continue;
+      times.push_back(seen_until(*own.of_realization[r], last));
     }
     return times.size();
   };
@@ -219,13 +219,13 @@ std::size_t orders_first(std::span<const OrderingTimes> all) {
     for (const OrderingTime& time : times.known()) pooled.push_back(seen_until(time, last));
   }
   const std::vector<double> scores = log_rank_scores(pooled);
-  std::size_t best = 0, from = 0;
+  std::size_t best = 0, begin = 0;
   double highest = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < all.size(); ++k) {
     const std::size_t n = all[k].known().size();
     double sum = 0;
-    for (std::size_t i = from; i < from + n; ++i) sum += scores[i];
-    from += n;
+    for (std::size_t i = begin; i < begin + n; ++i) sum += scores[i];
+    begin += n;
     if (n > 0 && sum / static_cast<double>(n) > highest + rounding) {
       highest = sum / static_cast<double>(n);
       best = k;

@@ -16,8 +16,8 @@ constexpr const char* kaplan_meier = "Kaplan & Meier 1958, doi:10.2307/2281868";
 constexpr const char* brookmeyer = "Brookmeyer & Crowley 1982, doi:10.2307/2530286";
 constexpr const char* thoman = "Thoman, Bain & Antle 1969, Technometrics 11, 445";
 
-Quantity one(std::string name, double value, std::string units, std::string long_name,
-             std::string source = "") {
+Quantity single_value(std::string name, double value, std::string units, std::string long_name,
+                      std::string source = "") {
   return {std::move(name),  {}, std::vector{value}, std::move(units), std::move(long_name),
           std::move(source)};
 }
@@ -28,40 +28,40 @@ void put(Table& table, Quantity quantity) {
 
 void add_limits(Table& table, const std::string& name, const Limits& limits, const char* level,
                 const std::string& units, const char* source) {
-  put(table, one(fmt::format("{}_low_{}", name, level), limits.low, units,
-                 fmt::format("lower end of the {} % interval", level), source));
-  put(table, one(fmt::format("{}_high_{}", name, level), limits.high, units,
-                 fmt::format("upper end of the {} % interval", level), source));
+  put(table, single_value(fmt::format("{}_low_{}", name, level), limits.low, units,
+                          fmt::format("lower end of the {} % interval", level), source));
+  put(table, single_value(fmt::format("{}_high_{}", name, level), limits.high, units,
+                          fmt::format("upper end of the {} % interval", level), source));
 }
 
 void add_growth(Table& table, const std::string& name, const RealizationMean& growth,
                 const std::string& units, const std::string& long_name) {
-  put(table, one(name, growth.value, units, long_name));
-  put(table,
-      one(name + "_error", error_or_nan(growth.error), units, "standard error over realizations"));
-  put(table, one(name + "_dof", growth.error.dof, "1", "its degrees of freedom"));
+  put(table, single_value(name, growth.value, units, long_name));
+  put(table, single_value(name + "_error", error_or_nan(growth.error), units,
+                          "standard error over realizations"));
+  put(table, single_value(name + "_dof", growth.error.dof, "1", "its degrees of freedom"));
 }
 
 void add_survival(Table& table, const Survival& curve) {
-  const std::vector<std::string> along = {"tap"};
+  const std::vector<std::string> axes = {"tap"};
   std::vector<double> low, high;
   for (const Limits& limits : curve.limits) {
     low.push_back(limits.low);
     high.push_back(limits.high);
   }
-  table.axes.push_back({"tap", along, curve.taps, "taps",
+  table.axes.push_back({"tap", axes, curve.taps, "taps",
                         "0, taps at which a realization ordered, the last that could show it", ""});
   const char* const clopper_pearson = "Clopper & Pearson 1934, doi:10.1093/biomet/26.4.404";
-  put(table, {"ordered", along, curve.ordered, "1", "realizations that have ordered", ""});
-  put(table, {"survival", along, curve.share, "1", "share that has not ordered", kaplan_meier});
-  put(table, {"survival_error", along, curve.error, "1", "Greenwood's error", kaplan_meier});
+  put(table, {"ordered", axes, curve.ordered, "1", "realizations that have ordered", ""});
+  put(table, {"survival", axes, curve.share, "1", "share that has not ordered", kaplan_meier});
+  put(table, {"survival_error", axes, curve.error, "1", "Greenwood's error", kaplan_meier});
   put(table,
-      {"survival_low_95", along, low, "1", "lower end of the 95 % interval", clopper_pearson});
+      {"survival_low_95", axes, low, "1", "lower end of the 95 % interval", clopper_pearson});
   put(table,
-      {"survival_high_95", along, high, "1", "upper end of the 95 % interval", clopper_pearson});
+      {"survival_high_95", axes, high, "1", "upper end of the 95 % interval", clopper_pearson});
 }
 
-std::string between(const Limits& limits) {
+std::string limits_text(const Limits& limits) {
   const auto end = [](double tap) {
     return std::isnan(tap) ? std::string("no limit") : finite_text("{:.0f}", tap);
   };
@@ -86,10 +86,11 @@ void OrderingAnalysis::add(std::uint32_t realization, std::span<const double> va
 }
 
 OrderingTimes OrderingAnalysis::times(std::size_t n_realizations) const {
-  OrderingTimes out{.of_realization = {}, .last = last_};
-  out.of_realization.resize(n_realizations);
-  for (std::size_t i = 0; i < times_.size(); ++i) out.of_realization[realizations_[i]] = times_[i];
-  return out;
+  OrderingTimes times{.of_realization = {}, .last = last_};
+  times.of_realization.resize(n_realizations);
+  for (std::size_t i = 0; i < times_.size(); ++i)
+    times.of_realization[realizations_[i]] = times_[i];
+  return times;
 }
 
 void OrderingAnalysis::add_times(Table& table) const {
@@ -97,9 +98,9 @@ void OrderingAnalysis::add_times(Table& table) const {
   for (const OrderingTime& time : times_) {
     taps.push_back(time.ordered ? static_cast<double>(time.tap) : not_a_number);
   }
-  const std::vector<std::string> along = {"realization"};
-  table.axes.push_back({"realization", along, realizations_, "1", "number of the realization", ""});
-  put(table, {"time_to_order", along, taps, "taps",
+  const std::vector<std::string> axes = {"realization"};
+  table.axes.push_back({"realization", axes, realizations_, "1", "number of the realization", ""});
+  put(table, {"time_to_order", axes, taps, "taps",
               "first tap from which it is ordered; - where it is not", ""});
 }
 
@@ -110,13 +111,15 @@ void OrderingAnalysis::add_law(Table& table) const {
                                                  {not_a_number, not_a_number},
                                                  {not_a_number, not_a_number},
                                                  not_a_number});
-  put(table, one("weibull_shape", law.shape, "1",
-                 "of S = exp(-(t/scale)^shape), tap n being t = n - 1/2; 1: memoryless", thoman));
+  put(table,
+      single_value("weibull_shape", law.shape, "1",
+                   "of S = exp(-(t/scale)^shape), tap n being t = n - 1/2; 1: memoryless", thoman));
   add_limits(table, "weibull_shape", law.shape_68, "68", "1", thoman);
   add_limits(table, "weibull_shape", law.shape_95, "95", "1", thoman);
-  put(table, one("weibull_scale", law.scale, "taps",
-                 "t by which 63 % have ordered, tap n being t = n - 1/2", thoman));
-  put(table, one("memoryless_p", law.memoryless_p, "1", "of shape = 1, two-sided", thoman));
+  put(table, single_value("weibull_scale", law.scale, "taps",
+                          "t by which 63 % have ordered, tap n being t = n - 1/2", thoman));
+  put(table,
+      single_value("memoryless_p", law.memoryless_p, "1", "of shape = 1, two-sided", thoman));
   const GrowthRates growth = growth_.result();
   add_growth(table, "growth_per_decade", growth.per_decade, series_.units + "/decade",
              "slope on log10 t from tap 1 on, decades weighing alike");
@@ -143,8 +146,8 @@ Table OrderingAnalysis::table() const {
   add_survival(table, curve);
   const double median = median_time(times_);
   const Limits limits_68 = median_limits(times_, 0.6827), limits_95 = median_limits(times_, 0.95);
-  put(table, one("median_time", median, "taps", "by which half of the realizations have ordered",
-                 kaplan_meier));
+  put(table, single_value("median_time", median, "taps",
+                          "by which half of the realizations have ordered", kaplan_meier));
   add_limits(table, "median_time", limits_68, "68", "taps", brookmeyer);
   add_limits(table, "median_time", limits_95, "95", "taps", brookmeyer);
   add_law(table);
@@ -159,7 +162,7 @@ Table OrderingAnalysis::table() const {
        {"verdict", std::isnan(median)
                        ? so_far + ": the median is not reached"
                        : finite_text("{}; half by tap {:.0f} (68 %: {}; 95 %: {})", so_far, median,
-                                     between(limits_68), between(limits_95))}});
+                                     limits_text(limits_68), limits_text(limits_95))}});
   return table;
 }
 

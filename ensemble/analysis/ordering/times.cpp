@@ -61,19 +61,19 @@ double slope(std::span<const double> series, const Place& place, const Weight& w
 
 OrderingTime time_to_order(std::span<const double> series, double threshold, std::uint64_t hold) {
   assert(hold >= 1 && hold <= series.size());
-  std::uint64_t above = 0;
+  std::uint64_t n_above = 0;
   for (std::size_t t = 0; t < series.size(); ++t) {
-    above = series[t] >= threshold ? above + 1 : 0;
-    if (above == hold) return {t + 1 - hold, true};
+    n_above = series[t] >= threshold ? n_above + 1 : 0;
+    if (n_above == hold) return {t + 1 - hold, true};
   }
   return {series.size() - hold, false};
 }
 
 Limits share_limits(std::uint64_t k, std::uint64_t n, double level) {
   const double tail = 0.5 * (1 - level);
-  const auto more = [&](double p) { return at_least(k, n, p); };
+  const auto greater = [&](double p) { return at_least(k, n, p); };
   const auto less = [&](double p) { return at_least(k + 1, n, p); };
-  return {k == 0 ? 0 : inverse(more, tail), k == n ? 1 : inverse(less, 1 - tail)};
+  return {k == 0 ? 0 : inverse(greater, tail), k == n ? 1 : inverse(less, 1 - tail)};
 }
 
 Survival survival(std::span<const OrderingTime> times, std::uint64_t last) {
@@ -109,8 +109,10 @@ Limits median_limits(std::span<const OrderingTime> times, double level) {
   // The rank-th time is above the median where fewer than `rank` are at or below it.
   std::uint64_t rank = 0;
   while (rank < n / 2 && 1 - at_least(rank + 1, n, 0.5) <= 0.5 * (1 - level)) ++rank;
-  const auto time = [&](std::uint64_t at) {
-    return at >= 1 && at <= events.size() ? static_cast<double>(events[at - 1]) : not_a_number;
+  const auto time = [&](std::uint64_t order_index) {
+    return order_index >= 1 && order_index <= events.size()
+               ? static_cast<double>(events[order_index - 1])
+               : not_a_number;
   };
   if (rank == 0) return {not_a_number, not_a_number};
   return {time(rank), time(n + 1 - rank)};

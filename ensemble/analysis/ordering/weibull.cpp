@@ -105,8 +105,8 @@ std::optional<WeibullFit> weibull(std::span<const OrderingTime> times, std::uint
   };
   fit.shape_68 = limits(0.6827);
   fit.shape_95 = limits(0.95);
-  const auto below = std::ranges::lower_bound(ratios, fit.shape) - ratios.begin();
-  const double share = (static_cast<double>(below) + 0.5) / static_cast<double>(ratios.size() + 1);
+  const auto rank = std::ranges::lower_bound(ratios, fit.shape) - ratios.begin();
+  const double share = (static_cast<double>(rank) + 0.5) / static_cast<double>(ratios.size() + 1);
   fit.memoryless_p = std::min(1.0, 2 * std::min(share, 1 - share));
   return fit;
 }

@@ -149,13 +149,13 @@ std::vector<double> SpectrumAverage::sound_log_density(std::size_t left_out) con
 }
 
 LogLogSlope SpectrumAverage::slope(const Band& band) const {
-  const auto without = [&](std::size_t left_out) {
+  const auto spectrum_without = [&](std::size_t left_out) {
     return straight_line(in_band(slope_bins_.frequency, sound_log_density(left_out), band));
   };
-  LogLogSlope slope = without(none_left_out);
+  LogLogSlope slope = spectrum_without(none_left_out);
   if (slope_densities_.size() < 3) return slope;
   Moments slopes;
-  for (std::size_t r = 0; r < slope_densities_.size(); ++r) slopes.add(without(r).slope);
+  for (std::size_t r = 0; r < slope_densities_.size(); ++r) slopes.add(spectrum_without(r).slope);
   // Tukey 1958: leaving one out moves an estimate by 1/(n - 1) of what redrawing it would.
   slope.dof = static_cast<double>(slope_densities_.size() - 1);
   slope.error = slopes.sigma() * std::sqrt(slope.dof);

@@ -59,16 +59,17 @@ struct AutoregressiveSlope {
 
 AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogSlope& measured,
                                    const AutocorrelationTime& memory, const Band& band) {
-  const auto at = [&](double time) {
+  const auto value_at = [&](double time) {
     return average.autoregressive_slope(std::max(time, 0.5), band);
   };
-  AutoregressiveSlope found{.slope = at(memory.time)};
+  AutoregressiveSlope found{.slope = value_at(memory.time)};
   // A short series' memory comes out too short, and its lowest lines too low: by so much slopes of
   // true AR(1) are off, however many realizations there are.
   constexpr double bias = 0.03;
-  found.error = {
-      std::hypot(0.5 * (at(memory.time + memory.error) - at(memory.time - memory.error)), bias),
-      std::numeric_limits<double>::infinity()};
+  found.error = {std::hypot(0.5 * (value_at(memory.time + memory.error) -
+                                   value_at(memory.time - memory.error)),
+                            bias),
+                 std::numeric_limits<double>::infinity()};
   found.p =
       p_value(measured.slope - found.slope, combined({measured.error, measured.dof}, found.error));
   return found;
@@ -131,17 +132,17 @@ Table SpectrumAnalysis::table() const {
     lines.push_back(spectrum.bins.n_lines(b));
   const std::string density_units =
       series_.units == "1" ? "taps" : fmt::format("{}^2 taps", series_.units);
-  const std::vector<std::string> along = {"frequency"};
+  const std::vector<std::string> axes = {"frequency"};
   Table table{.name = "spectrum/" + series_.observable, .axes = {}, .quantities = {}, .notes = {}};
-  table.axes = {{"frequency", along, spectrum.bins.frequency, "1/taps",
+  table.axes = {{"frequency", axes, spectrum.bins.frequency, "1/taps",
                  "geometric mean of the lines of a bin", ""}};
-  table.quantities = {{"density", along, spectrum.density, density_units,
+  table.quantities = {{"density", axes, spectrum.density, density_units,
                        "one-sided power spectral density", welch_1967},
-                      {"density_error", along, spectrum.error, density_units,
+                      {"density_error", axes, spectrum.error, density_units,
                        spectrum.realizations > 1 ? "standard error over realizations"
                                                  : "standard error for Gaussian noise",
                        ""},
-                      {"lines", along, lines, "1", "lines of a bin", ""}};
+                      {"lines", axes, lines, "1", "lines of a bin", ""}};
   const auto add = [&](const char* name, double value, const std::string& units,
                        const char* meaning, const char* source = "") {
     table.quantities.push_back({name, {}, std::vector{value}, units, meaning, source});

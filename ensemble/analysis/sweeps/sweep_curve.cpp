@@ -47,16 +47,16 @@ SweepCurve::SweepCurve(std::vector<double> x, std::vector<double> y, std::vector
   assert(y_.size() == x_.size() && error_.size() == x_.size());
   sort_and_drop();
   fitted_y_ = y_;
-  const auto serves = [](const ErrorOf& one) {
-    return one.dof + 1 >= fewest_for_own_error && one.error > 0;
+  const auto serves = [](const ErrorOf& group_error) {
+    return group_error.dof + 1 >= fewest_for_own_error && group_error.error > 0;
   };
   own_errors_ = std::ranges::all_of(error_, serves);
   if (own_errors_) return;
   double variance = 0;
-  for (const ErrorOf& one : error_) {
-    if (!one.known() || !std::isfinite(one.dof)) continue;
-    variance += one.dof * one.error * one.error;
-    pooled_.dof += one.dof;
+  for (const ErrorOf& group_error : error_) {
+    if (!group_error.known() || !std::isfinite(group_error.dof)) continue;
+    variance += group_error.dof * group_error.error * group_error.error;
+    pooled_.dof += group_error.dof;
   }
   if (pooled_.known()) pooled_.error = std::sqrt(variance / pooled_.dof);
 }
@@ -118,10 +118,10 @@ void SweepCurve::pool_independent() {
 void SweepCurve::pool_matched() {
   if (n_points() == 0) return;
   for (std::size_t r = 0; r < realizations_.front().size(); ++r) {
-    const bool everywhere = std::ranges::all_of(realizations_, [r](const auto& values) {
+    const bool all_finite = std::ranges::all_of(realizations_, [r](const auto& values) {
       return r < values.size() && !std::isnan(values[r]);
     });
-    if (everywhere) common_.push_back(r);
+    if (all_finite) common_.push_back(r);
   }
   if (common_.empty()) return;
   const auto n = static_cast<double>(n_points()), m = static_cast<double>(common_.size());
@@ -165,13 +165,13 @@ bool SweepCurve::pools() const {
 
 double SweepCurve::p_of_equal_scatter() const {
   double points = 0, dof = 0, squares = 0, logarithms = 0, inverse = 0;
-  for (const ErrorOf& one : scatter_) {
-    if (!one.known() || !(one.error > 0)) continue;
+  for (const ErrorOf& error : scatter_) {
+    if (!error.known() || !(error.error > 0)) continue;
     ++points;
-    dof += one.dof;
-    squares += one.dof * square(one.error);
-    logarithms += one.dof * std::log(square(one.error));
-    inverse += 1 / one.dof;
+    dof += error.dof;
+    squares += error.dof * square(error.error);
+    logarithms += error.dof * std::log(square(error.error));
+    inverse += 1 / error.dof;
   }
   if (points < 2) return std::numeric_limits<double>::quiet_NaN();
   double correction = 1 + (inverse - 1 / dof) / (3 * (points - 1));
@@ -222,10 +222,10 @@ ErrorOf SweepCurve::matched_error_of(std::span<const double> coefficients) const
   std::vector<double> contrast;
   for (const double c : coefficients) contrast.push_back(c - mean);
   const double total = mean * static_cast<double>(n_points());
-  const ErrorOf within{pooled_.error * std::sqrt(sum_of_squares(contrast) / m), pooled_.dof};
+  const ErrorOf pooled_error{pooled_.error * std::sqrt(sum_of_squares(contrast) / m), pooled_.dof};
   const ErrorOf shared{std::abs(total) * level_.error / std::sqrt(m), level_.dof};
   const double size = std::sqrt(sum_of_squares(coefficients));
-  return std::abs(total) < 1e-10 * size ? within : combined(within, shared);
+  return std::abs(total) < 1e-10 * size ? pooled_error : combined(pooled_error, shared);
 }
 
 }  // namespace jostle::inline ensemble

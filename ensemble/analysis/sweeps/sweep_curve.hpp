@@ -129,8 +129,8 @@ StraightLine straight_line(const SweepCurve& curve);
 
 /// The difference of two points of a curve of means over realizations.
 struct SweepDifference {
-  std::size_t from = 0, to = 0;  // points
-  double value = 0;              // value at `to` minus value at `from`
+  std::size_t start = 0, end = 0;  // points
+  double value = 0;                // value at `end` minus value at `start`
   ErrorOf error{};
   std::uint64_t pairs = 0;      // realizations that both have; 0 for independent streams
   double p = 1, corrected = 1;  // by itself, and for the number of differences (Holm 1979)
@@ -147,7 +147,7 @@ enum class ComparedPairs { all_pairs, with_first };
 /// Differences of these pairs, by the tests of the overload above. A difference whose realizations
 /// do not scatter at all has no error and no p-value: M equal values do not show that others would
 /// be equal.
-std::vector<SweepDifference> differences(const SweepCurve& curve, ComparedPairs which);
+std::vector<SweepDifference> differences(const SweepCurve& curve, ComparedPairs pairs);
 
 /// The swept quantity: "sqrt_epsilon", its units, and a line of description.
 struct SweptValue {

@@ -13,19 +13,19 @@ ErrorOf error_of_mean(const Moments& moments) {
   return {moments.standard_error(), static_cast<double>(moments.count() - 1)};
 }
 
-SweepDifference difference(const SweepCurve& curve, std::size_t from, std::size_t to) {
-  SweepDifference found{.from = from, .to = to};
+SweepDifference difference(const SweepCurve& curve, std::size_t start, std::size_t end) {
+  SweepDifference found{.start = start, .end = end};
   if (curve.streams() == Streams::matched) {
-    const auto& a = curve.realizations()[from];
-    const auto& b = curve.realizations()[to];
+    const auto& a = curve.realizations()[start];
+    const auto& b = curve.realizations()[end];
     Moments pairs;
     for (std::size_t r = 0; r < std::min(a.size(), b.size()); ++r) pairs.add(b[r] - a[r]);
     found.value = pairs.mean();
     found.error = error_of_mean(pairs);
     found.pairs = pairs.count();
   } else {
-    found.value = curve.y()[to] - curve.y()[from];
-    found.error = combined(curve.error()[from], curve.error()[to]);
+    found.value = curve.y()[end] - curve.y()[start];
+    found.error = combined(curve.error()[start], curve.error()[end]);
   }
   found.p = p_value(found.value, found.error);
   return found;
@@ -33,7 +33,7 @@ SweepDifference difference(const SweepCurve& curve, std::size_t from, std::size_
 
 void correct_for_number(std::vector<SweepDifference>& all) {
   std::vector<double> p;
-  for (const SweepDifference& one : all) p.push_back(one.p);
+  for (const SweepDifference& difference : all) p.push_back(difference.p);
   p = corrected_for_number(p);
   for (std::size_t i = 0; i < all.size(); ++i) all[i].corrected = p[i];
 }
@@ -52,18 +52,18 @@ std::vector<SweepDifference> differences(const SweepCurve& curve,
   return all;
 }
 
-std::vector<SweepDifference> differences(const SweepCurve& curve, ComparedPairs which) {
+std::vector<SweepDifference> differences(const SweepCurve& curve, ComparedPairs pairs) {
   std::vector<SweepDifference> all;
   if (!curve.has_realizations()) return all;
-  const std::size_t n_from = which == ComparedPairs::all_pairs ? curve.n_points() : 1;
-  for (std::size_t from = 0; from < n_from; ++from) {
-    for (std::size_t to = from + 1; to < curve.n_points(); ++to) {
-      SweepDifference one = difference(curve, from, to);
-      if (one.error.known() && !(one.error.error > 0)) {
-        one.error = {};
-        one.p = p_value(one.value, one.error);
+  const std::size_t n_from = pairs == ComparedPairs::all_pairs ? curve.n_points() : 1;
+  for (std::size_t start = 0; start < n_from; ++start) {
+    for (std::size_t end = start + 1; end < curve.n_points(); ++end) {
+      SweepDifference tested = difference(curve, start, end);
+      if (tested.error.known() && !(tested.error.error > 0)) {
+        tested.error = {};
+        tested.p = p_value(tested.value, tested.error);
       }
-      all.push_back(one);
+      all.push_back(tested);
     }
   }
   correct_for_number(all);

@@ -54,8 +54,8 @@ LinearFit linear_fit(const SweepCurve& curve, std::size_t first, std::size_t poi
 // The points about the largest y, as many on both sides as the ends allow.
 std::size_t first_of_window(const std::vector<double>& y, std::size_t points) {
   const auto top = static_cast<std::size_t>(std::ranges::max_element(y) - y.begin());
-  const std::size_t below = points / 2;
-  return std::min(top > below ? top - below : 0, y.size() - points);
+  const std::size_t n_below = points / 2;
+  return std::min(top > n_below ? top - n_below : 0, y.size() - points);
 }
 
 std::size_t different_values(std::span<const double> ascending) {
@@ -108,7 +108,7 @@ std::string realizations_of(const SweepCurve& curve) {
 
 /// Words of a verdict for an extremum and for the curve on both sides of it.
 struct ExtremumWords {
-  const char *extremum, *end_value, *before, *behind, *bend;
+  const char *extremum, *end_value, *slope_before, *slope_behind, *bend;
 };
 constexpr ExtremumWords of_maximum{"maximum", "largest", "rises", "falls", "down"};
 constexpr ExtremumWords of_minimum{"minimum", "least", "falls", "rises", "up"};
@@ -123,7 +123,7 @@ std::string verdict_of(const SweepCurve& curve, const SweepExtremum& found,
   if (found.found()) {
     const bool open = std::isnan(found.x_low) || std::isnan(found.x_high);
     return fmt::format("found inside the sweep: the curve {} to it and {} behind it ({}){}",
-                       words.before, words.behind, test,
+                       words.slope_before, words.slope_behind, test,
                        open ? "; the 95 % interval of its place, by a test of its own, reaches an "
                               "end of the sweep"
                             : "");

@@ -63,16 +63,16 @@ void add_differences(const SweepCurve& curve, std::optional<std::size_t> referen
   const std::vector<SweepDifference> all = differences(curve, reference);
   if (all.empty()) return;
   std::vector<std::uint64_t> index;
-  std::vector<double> from, to, value, error, dof, p, corrected;
-  for (const SweepDifference& one : all) {
+  std::vector<double> start, end, value, error, dof, p, corrected;
+  for (const SweepDifference& difference : all) {
     index.push_back(index.size());
-    from.push_back(curve.x()[one.from]);
-    to.push_back(curve.x()[one.to]);
-    value.push_back(one.value);
-    error.push_back(error_or_nan(one.error));
-    dof.push_back(one.error.dof);
-    p.push_back(one.p);
-    corrected.push_back(one.corrected);
+    start.push_back(curve.x()[difference.start]);
+    end.push_back(curve.x()[difference.end]);
+    value.push_back(difference.value);
+    error.push_back(error_or_nan(difference.error));
+    dof.push_back(difference.error.dof);
+    p.push_back(difference.p);
+    corrected.push_back(difference.corrected);
   }
   table.axes.push_back({"pair", {"pair"}, std::move(index), "1", "pair of points", ""});
   const auto add = [&](const char* name, std::vector<double> values, const std::string& units,
@@ -80,8 +80,8 @@ void add_differences(const SweepCurve& curve, std::optional<std::size_t> referen
     table.quantities.push_back({name, {"pair"}, std::move(values), units, meaning, source});
   };
   const bool paired = curve.streams() == Streams::matched;
-  add("from", std::move(from), swept.units, "point that the other is compared with");
-  add("to", std::move(to), swept.units, "the other point");
+  add("from", std::move(start), swept.units, "point that the other is compared with");
+  add("to", std::move(end), swept.units, "the other point");
   add("difference", std::move(value), quantity.units, "value at `to` less that at `from`");
   add("difference_error", std::move(error), quantity.units,
       paired ? "standard error over realizations of their differences"
@@ -113,9 +113,9 @@ struct Errors {
 
 Errors numbers(const std::vector<ErrorOf>& errors) {
   Errors all;
-  for (const ErrorOf& one : errors) {
-    all.error.push_back(error_or_nan(one));
-    all.dof.push_back(one.dof);
+  for (const ErrorOf& error : errors) {
+    all.error.push_back(error_or_nan(error));
+    all.dof.push_back(error.dof);
   }
   return all;
 }

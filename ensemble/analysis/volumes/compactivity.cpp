@@ -20,19 +20,19 @@ namespace {
 
 constexpr double least_overlap = 0.02;
 
-/// `of` with no realization left out, then each.
+/// `value_of` with no realization left out, then each.
 template <class Of>
-Replicates replicates(std::size_t realizations, const Of& of) {
-  Replicates found{of(realizations), {}};
+Replicates replicates(std::size_t realizations, const Of& value_of) {
+  Replicates found{value_of(realizations), {}};
   for (std::size_t r = 0; realizations > 1 && r < realizations; ++r)
-    found.left_out.push_back(of(r));
+    found.left_out.push_back(value_of(r));
   return found;
 }
 
 Replicates sum(const Replicates& a, const Replicates& b, double factor = 1) {
-  Replicates both{a.whole + factor * b.whole, a.left_out};
-  for (std::size_t r = 0; r < a.left_out.size(); ++r) both.left_out[r] += factor * b.left_out[r];
-  return both;
+  Replicates total{a.whole + factor * b.whole, a.left_out};
+  for (std::size_t r = 0; r < a.left_out.size(); ++r) total.left_out[r] += factor * b.left_out[r];
+  return total;
 }
 
 // A straight line's change over the series, in deviations about the line; 0 where the values do not
@@ -47,15 +47,15 @@ double drift_of(std::span<const double> values, double mean) {
     squares += (values[t] - mean) * (values[t] - mean);
   }
   const double slope = 12 * covariance / (n * (n * n - 1));
-  const double about = std::max(squares - slope * covariance, 0.0) / n;
-  return about > 0 ? slope * (n - 1) / std::sqrt(about) : 0;
+  const double residual_variance = std::max(squares - slope * covariance, 0.0) / n;
+  return residual_variance > 0 ? slope * (n - 1) / std::sqrt(residual_variance) : 0;
 }
 
-CompactivityStep step_between(std::span<const SteadyVolumes> states, std::size_t from,
+CompactivityStep step_between(std::span<const SteadyVolumes> states, std::size_t start,
                               const VolumeBins& bins) {
-  const SteadyVolumes &first = states[from], &second = states[from + 1];
+  const SteadyVolumes &first = states[start], &second = states[start + 1];
   const std::size_t realizations = first.realizations();
-  CompactivityStep step{.from = from, .to = from + 1};
+  CompactivityStep step{.start = start, .end = start + 1};
   const auto mean_deviation = [&](std::size_t r) {
     return std::pow(first.variance(r) * second.variance(r), 0.25);
   };
@@ -122,13 +122,13 @@ double SteadyVolumes::mean(std::size_t left_out) const {
 }
 
 double SteadyVolumes::variance(std::size_t left_out) const {
-  Moments means, within;
+  Moments means, series_moments;
   for (std::size_t r = 0; r < means_.size(); ++r) {
     if (r == left_out) continue;
     means.add(means_[r]);
-    within.add(variances_[r]);
+    series_moments.add(variances_[r]);
   }
-  return within.mean() + means.sigma() * means.sigma();
+  return series_moments.mean() + means.sigma() * means.sigma();
 }
 
 std::vector<double> SteadyVolumes::histogram(std::size_t left_out, std::size_t n_bins) const {

@@ -74,9 +74,9 @@ LogEstimate variance_of(const SteadyVolumes& state);
 
 /// 1/X of the second state less that of the first, in 1/(volumes of a sphere), by two estimators.
 struct CompactivityStep {
-  std::size_t from = 0, to = 0;  // states
-  double separation = 0;         // separation of the mean volumes, in deviations
-  double overlap = 0;            // sum over bins of the smaller share: 1 of equal histograms
+  std::size_t start = 0, end = 0;  // states
+  double separation = 0;           // separation of the mean volumes, in deviations
+  double overlap = 0;              // sum over bins of the smaller share: 1 of equal histograms
   /// True if the overlap is sufficient for histograms without any single realization.
   bool overlaps = false;
   /// -(V_2 - V_1) / (s_1 s_2), s^2 the variance: the integral of -dV / var(V) (Nowak et al. 1998,

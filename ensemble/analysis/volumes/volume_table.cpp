@@ -26,15 +26,16 @@ class ColumnsAlong {
   void add(const std::string& name, const std::vector<Jackknifed>& values, const std::string& units,
            const std::string& meaning, const char* source = "") {
     std::vector<double> value, error, dof, low, high;
-    for (const Jackknifed& one : values) {
-      value.push_back(one.value);
-      error.push_back(error_or_nan(one.error));
-      dof.push_back(one.error.dof);
+    for (const Jackknifed& estimate : values) {
+      value.push_back(estimate.value);
+      error.push_back(error_or_nan(estimate.error));
+      dof.push_back(estimate.error.dof);
       const double half = student_half_width(
-          error.back(), one.error.known() ? static_cast<std::size_t>(one.error.dof) + 1 : 0,
+          error.back(),
+          estimate.error.known() ? static_cast<std::size_t>(estimate.error.dof) + 1 : 0,
           interval_levels[1]);
-      low.push_back(one.value - half);
-      high.push_back(one.value + half);
+      low.push_back(estimate.value - half);
+      high.push_back(estimate.value + half);
     }
     add(name, std::move(value), units, meaning, source);
     add(name + "_error", std::move(error), units, "standard error, jackknife over realizations");
@@ -46,13 +47,13 @@ class ColumnsAlong {
   void add_variances(const std::string& name, const std::vector<LogEstimate>& values,
                      const std::string& units, const std::string& meaning) {
     std::vector<double> value, error, low_68, high_68, low, high;
-    for (const LogEstimate& one : values) {
-      value.push_back(one.value);
-      error.push_back(one.error);
-      low_68.push_back(one.low_68);
-      high_68.push_back(one.high_68);
-      low.push_back(one.low_95);
-      high.push_back(one.high_95);
+    for (const LogEstimate& estimate : values) {
+      value.push_back(estimate.value);
+      error.push_back(estimate.error);
+      low_68.push_back(estimate.low_68);
+      high_68.push_back(estimate.high_68);
+      low.push_back(estimate.low_95);
+      high.push_back(estimate.high_95);
     }
     add(name, std::move(value), units, meaning, nowak);
     add(name + "_error", std::move(error), units, "standard error, jackknife of the logarithm");
@@ -74,14 +75,14 @@ Jackknifed mean_of(const SteadyVolumes& state) {
   return jackknifed(means);
 }
 
-LogEstimate scaled(const LogEstimate& one, double factor) {
-  return {one.value * factor,   one.error * factor,  one.low_68 * factor,
-          one.high_68 * factor, one.low_95 * factor, one.high_95 * factor};
+LogEstimate scaled(const LogEstimate& estimate, double factor) {
+  return {estimate.value * factor,   estimate.error * factor,  estimate.low_68 * factor,
+          estimate.high_68 * factor, estimate.low_95 * factor, estimate.high_95 * factor};
 }
 
 void add_states(const Column& observable, const std::string& control, const std::string& units,
                 const VolumeOf& volume_of, std::span<const VolumeState> states, Table& table) {
-  ColumnsAlong out(table, "state");
+  ColumnsAlong columns(table, "state");
   std::vector<std::uint64_t> index, first, last;
   std::vector<double> strengths;
   std::vector<std::string> steady;
@@ -102,30 +103,30 @@ void add_states(const Column& observable, const std::string& control, const std:
     volume_variances.push_back(scaled(variance_of(state.volumes), 1 / volume_of.spheres));
   }
   table.axes.push_back({"state", {"state"}, std::move(index), "1", "steady state", ""});
-  out.add(control, std::move(strengths), units, "strength of the taps");
-  out.add("first_tap", std::move(first), "taps", "first tap of the state");
-  out.add("last_tap", std::move(last), "taps", "last tap of the state");
-  out.add("steady", std::move(steady), "1", "verdict on the steady state");
-  out.add(observable.name, means, observable.units, observable.long_name);
+  columns.add(control, std::move(strengths), units, "strength of the taps");
+  columns.add("first_tap", std::move(first), "taps", "first tap of the state");
+  columns.add("last_tap", std::move(last), "taps", "last tap of the state");
+  columns.add("steady", std::move(steady), "1", "verdict on the steady state");
+  columns.add(observable.name, means, observable.units, observable.long_name);
   const std::string squared = observable.units == "1" ? "1" : observable.units + "^2";
-  out.add_variances("variance", variances, squared,
-                    "variance over taps and realizations together, about their common mean");
-  out.add("volume", volumes, "sphere volumes", "volume a sphere, V/N");
-  out.add_variances("volume_variance", volume_variances, "sphere volumes^2",
-                    "variance of V over N, which does not depend on N where parts of a bed "
-                    "are independent");
+  columns.add_variances("variance", variances, squared,
+                        "variance over taps and realizations together, about their common mean");
+  columns.add("volume", volumes, "sphere volumes", "volume a sphere, V/N");
+  columns.add_variances("volume_variance", volume_variances, "sphere volumes^2",
+                        "variance of V over N, which does not depend on N where parts of a bed "
+                        "are independent");
 }
 
 void add_steps(std::span<const CompactivityStep> steps, std::span<const std::size_t> used,
                Table& table) {
-  ColumnsAlong out(table, "neighbours");
-  std::vector<std::uint64_t> index, from, to;
+  ColumnsAlong columns(table, "neighbours");
+  std::vector<std::uint64_t> index, start, end;
   std::vector<double> separation, overlap;
   std::vector<Jackknifed> fluctuations, histograms, difference, bend;
   for (const CompactivityStep& step : steps) {
     index.push_back(index.size());
-    from.push_back(used[step.from]);
-    to.push_back(used[step.to]);
+    start.push_back(used[step.start]);
+    end.push_back(used[step.end]);
     separation.push_back(step.separation);
     overlap.push_back(step.overlap);
     fluctuations.push_back(jackknifed(step.fluctuations));
@@ -136,15 +137,17 @@ void add_steps(std::span<const CompactivityStep> steps, std::span<const std::siz
   }
   const std::string per_volume = "1/sphere volumes";
   table.axes.push_back({"neighbours", {"neighbours"}, std::move(index), "1", "two states", ""});
-  out.add("from_state", std::move(from), "1", "the first of the two");
-  out.add("to_state", std::move(to), "1", "the second");
-  out.add("separation", std::move(separation), "1", "of their mean volumes, in deviations");
-  out.add("overlap", std::move(overlap), "1", "what their histograms share", dean);
-  out.add("step_fluctuations", fluctuations, per_volume, "change of 1/X, -dV/var(V)", nowak);
-  out.add("step_histograms", histograms, per_volume, "change of 1/X, slope of ln P_1/P_2", dean);
-  out.add("step_difference", difference, per_volume, "histograms less fluctuations");
-  out.add("bend", bend, per_volume,
-          "change of the slope of ln P_1/P_2 over a deviation; 0 with one density of states", dean);
+  columns.add("from_state", std::move(start), "1", "the first of the two");
+  columns.add("to_state", std::move(end), "1", "the second");
+  columns.add("separation", std::move(separation), "1", "of their mean volumes, in deviations");
+  columns.add("overlap", std::move(overlap), "1", "what their histograms share", dean);
+  columns.add("step_fluctuations", fluctuations, per_volume, "change of 1/X, -dV/var(V)", nowak);
+  columns.add("step_histograms", histograms, per_volume, "change of 1/X, slope of ln P_1/P_2",
+              dean);
+  columns.add("step_difference", difference, per_volume, "histograms less fluctuations");
+  columns.add("bend", bend, per_volume,
+              "change of the slope of ln P_1/P_2 over a deviation; 0 with one density of states",
+              dean);
 }
 
 }  // namespace
@@ -166,13 +169,13 @@ Table volume_table(std::string name, const Column& observable, const std::string
     }
   }
   const std::vector<CompactivityStep> steps = compactivity_steps(steady, bins);
-  ColumnsAlong out(table, "state");
+  ColumnsAlong columns(table, "state");
   const auto inverse_x = [&](const char* suffix, Replicates CompactivityStep::*estimator,
                              const char* meaning, const char* source) {
     std::vector<Jackknifed> all(states.size(), {not_a_number, {}});
     const std::vector<Jackknifed> found = inverse_compactivity(steps, estimator);
     for (std::size_t i = 0; i < used.size(); ++i) all[used[i]] = found[i];
-    out.add(std::string("inverse_x_") + suffix, all, "1/sphere volumes", meaning, source);
+    columns.add(std::string("inverse_x_") + suffix, all, "1/sphere volumes", meaning, source);
   };
   inverse_x("fluctuations", &CompactivityStep::fluctuations,
             "1/X less that of the first steady state, by the integral of -dV/var(V)", nowak);
@@ -185,14 +188,15 @@ Table volume_table(std::string name, const Column& observable, const std::string
   if (!left_out.empty())
     table.notes.emplace_back("left_out", "not steady, at " + control + " " + left_out);
   const Jackknifed drift = drift_together(steady);
-  const auto one = [&table](const char* quantity, double value, const char* meaning) {
+  const auto add_value = [&table](const char* quantity, double value, const char* meaning) {
     table.quantities.push_back({quantity, {}, std::vector{value}, "1", meaning, ""});
   };
-  one("drift_together", drift.value,
+  add_value(
+      "drift_together", drift.value,
       "change of the volume over the taps of a state, in deviations of single taps, mean of those "
       "used");
-  one("drift_together_error", error_or_nan(drift.error), "standard error over realizations");
-  one("drift_together_dof", drift.error.dof, "its degrees of freedom");
+  add_value("drift_together_error", error_or_nan(drift.error), "standard error over realizations");
+  add_value("drift_together_dof", drift.error.dof, "its degrees of freedom");
   table.notes.emplace_back("verdict", used.size() < 2
                                           ? "cannot decide: fewer than two states are steady"
                                           : compactivity_verdict(steps, drift).statement);

@@ -18,9 +18,9 @@ namespace {
 template <class Value>
 std::vector<Value> at_places(const std::vector<Value>& values,
                              const std::vector<std::size_t>& places) {
-  std::vector<Value> out;
-  for (const std::size_t place : places) out.push_back(values[place]);
-  return out;
+  std::vector<Value> chosen;
+  for (const std::size_t place : places) chosen.push_back(values[place]);
+  return chosen;
 }
 
 /// Taps of a curve that are drawn: a decade, and evenly.
@@ -43,11 +43,11 @@ constexpr std::uint64_t most_rows_of_realizations = 200'000;
 /// Adds some realizations of the observables; a point with one realization needs none.
 void add_realizations(const ResultsFile& file, DrawnCurve& curve) {
   const std::uint64_t rows = file.n_stored_rows(curve.point);
-  const std::vector<std::uint32_t> there = realizations_with_taps(file, curve.point);
-  if (there.size() < 2 || rows > most_rows_of_realizations) return;
+  const std::vector<std::uint32_t> available = realizations_with_taps(file, curve.point);
+  if (available.size() < 2 || rows > most_rows_of_realizations) return;
   for (DrawnColumn& column : curve.columns) {
     if (!column.is_observable) continue;
-    for (const std::uint32_t r : spread(there, most_thin_lines)) {
+    for (const std::uint32_t r : spread(available, most_thin_lines)) {
       const std::vector<double> values =
           file.block(curve.point, column.label.name, {0, rows}, {r, r + 1});
       column.realizations.push_back({r, at_places(values, curve.taps)});
@@ -150,9 +150,10 @@ constexpr std::size_t most_snapshot_points = 24, most_snapshot_realizations = 64
 
 std::vector<std::uint32_t> realizations_with_taps(const ResultsFile& file, std::uint32_t point) {
   std::vector<std::uint32_t> begun;
-  for (const RealizationSummary& one : file.realizations()) {
-    if (one.id.point == point && one.rows > 0 && one.status != RealizationStatus::failed)
-      begun.push_back(one.id.realization);
+  for (const RealizationSummary& realization : file.realizations()) {
+    if (realization.id.point == point && realization.rows > 0 &&
+        realization.status != RealizationStatus::failed)
+      begun.push_back(realization.id.realization);
   }
   return begun;
 }
@@ -182,10 +183,11 @@ std::vector<DrawnCurve> drawn_curves(const ResultsFile& file, const DrawnRoom& a
   const CurveGrid* grid = nullptr;
   std::size_t needed = 0;
   const bool changing = changes_strength(file);
-  for (const CurveGrid& one : changing ? std::span(changing_grids) : std::span(relaxing_grids)) {
-    grid = &one;
+  for (const CurveGrid& taps_grid :
+       changing ? std::span(changing_grids) : std::span(relaxing_grids)) {
+    grid = &taps_grid;
     needed = 0;
-    for (const std::uint32_t point : begun) needed += curve_values(file, point, one);
+    for (const std::uint32_t point : begun) needed += curve_values(file, point, taps_grid);
     if (needed <= room) break;
   }
   std::vector<std::uint32_t> points = begun;
@@ -220,9 +222,9 @@ std::vector<DrawnSnapshots> drawn_snapshots(const ResultsFile& file, const Wante
     const Snapshots& kept = file.study().points[point].snapshots;
     const std::vector<std::uint64_t> taps = spread(kept.taps, most_histograms);
     SnapshotMeans means;
-    const std::vector<std::uint32_t> there = realizations_with_taps(file, point);
-    realizations = std::max(realizations, there.size());
-    for (const std::uint32_t r : spread(there, most_snapshot_realizations)) {
+    const std::vector<std::uint32_t> available = realizations_with_taps(file, point);
+    realizations = std::max(realizations, available.size());
+    for (const std::uint32_t r : spread(available, most_snapshot_realizations)) {
       means.add(*file.realization({point, r}), taps);
     }
     if (!means.empty()) all.push_back(means.means(point, kept.bin_width));

@@ -15,8 +15,9 @@ std::string point_of(const Table& table) {
 }
 
 bool is_wanted(const std::string& point, const WantedPoints& wanted) {
-  return point.empty() || wanted.empty() || std::ranges::any_of(wanted, [&](std::uint32_t one) {
-           return point == fmt::format("point_{:04}", one);
+  return point.empty() || wanted.empty() ||
+         std::ranges::any_of(wanted, [&](std::uint32_t wanted_point) {
+           return point == fmt::format("point_{:04}", wanted_point);
          });
 }
 
@@ -36,22 +37,22 @@ std::vector<DrawnTable> drawn_tables(const ResultsFile& file, const DrawnRoom& a
       if (is_wanted(point_of(table), wanted)) kept.push_back({group, std::move(table)});
     }
   }
-  std::size_t before = 0, needed = 0;
-  for (const DrawnTable& one : kept) before += n_values(one.table);
+  std::size_t n_before = 0, needed = 0;
+  for (const DrawnTable& table : kept) n_before += n_values(table.table);
   std::vector<DrawnTable> fitting;
   for (const TableThinning& thinning : table_thinnings) {
     fitting.clear();
     needed = 0;
-    for (const DrawnTable& one : kept) {
-      fitting.push_back({one.group, thinned(one.table, thinning)});
+    for (const DrawnTable& table : kept) {
+      fitting.push_back({table.group, thinned(table.table, thinning)});
       needed += n_values(fitting.back().table);
     }
     if (needed <= room) break;
   }
-  if (needed < before) left_out.push_back("tables are drawn at some of their taps and places");
+  if (needed < n_before) left_out.push_back("tables are drawn at some of their taps and places");
   std::vector<std::string> points;
-  for (const DrawnTable& one : fitting) {
-    const std::string point = point_of(one.table);
+  for (const DrawnTable& table : fitting) {
+    const std::string point = point_of(table.table);
     if (!point.empty() && std::ranges::find(points, point) == points.end()) points.push_back(point);
   }
   std::ranges::sort(points);
@@ -68,15 +69,15 @@ std::vector<DrawnTable> drawn_tables(const ResultsFile& file, const DrawnRoom& a
   std::vector<DrawnTable> tables;
   std::size_t taken = 0;
   bool too_large = false;
-  for (DrawnTable& one : fitting) {
-    const std::string point = point_of(one.table);
+  for (DrawnTable& table : fitting) {
+    const std::string point = point_of(table.table);
     if (!point.empty() && !std::ranges::binary_search(points, point)) continue;
-    taken += n_values(one.table);
+    taken += n_values(table.table);
     if (taken > 2 * room) {
       too_large = true;
       break;
     }
-    tables.push_back(std::move(one));
+    tables.push_back(std::move(table));
   }
   if (too_large) left_out.push_back("some tables are longer than a page has room for");
   return tables;

@@ -14,9 +14,9 @@ bool is_letter_or_digit(char c) {
 
 /// True if the text at this place is a name, not a part of one: "Phi_b" has "Phi", "alpha_line" has
 /// no "alpha".
-bool stands_alone(std::string_view text, std::size_t at, std::size_t length) {
-  if (at > 0 && (is_letter_or_digit(text[at - 1]) || text[at - 1] == '_')) return false;
-  const std::string_view rest = text.substr(at + length);
+bool stands_alone(std::string_view text, std::size_t index, std::size_t length) {
+  if (index > 0 && (is_letter_or_digit(text[index - 1]) || text[index - 1] == '_')) return false;
+  const std::string_view rest = text.substr(index + length);
   if (rest.empty()) return true;
   if (rest[0] != '_') return !is_letter_or_digit(rest[0]);
   return rest.size() >= 2 && is_letter_or_digit(rest[1]) &&
@@ -36,11 +36,12 @@ constexpr std::pair<std::string_view, std::string_view> signs[] = {
 /// "^2" and "^3" after a letter, a digit or a bracket, where no further digit follows.
 void replace_powers(std::string& text) {
   for (const auto& [power, sign] : {std::pair{"^2", "²"}, std::pair{"^3", "³"}}) {
-    for (std::size_t at = 0; (at = text.find(power, at)) != std::string::npos;) {
-      const bool ends = at + 2 == text.size() || !(is_letter_or_digit(text[at + 2]) ||
-                                                   text[at + 2] == '.' || text[at + 2] == '/');
-      if (ends) text.replace(at, 2, sign);
-      ++at;
+    for (std::size_t index = 0; (index = text.find(power, index)) != std::string::npos;) {
+      const bool ends =
+          index + 2 == text.size() || !(is_letter_or_digit(text[index + 2]) ||
+                                        text[index + 2] == '.' || text[index + 2] == '/');
+      if (ends) text.replace(index, 2, sign);
+      ++index;
     }
   }
 }
@@ -106,21 +107,21 @@ std::string printed_name(const std::string& name) {
 
 std::string in_print(const std::string& text) {
   std::string printed;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::string_view rest = std::string_view(text).substr(at);
-    const auto* const sign =
-        std::ranges::find_if(signs, [&](const auto& one) { return rest.starts_with(one.first); });
-    const auto* const letter = std::ranges::find_if(letters, [&](const auto& one) {
-      return rest.starts_with(one.first) && stands_alone(text, at, one.first.size());
+  for (std::size_t index = 0; index < text.size();) {
+    const std::string_view rest = std::string_view(text).substr(index);
+    const auto* const sign = std::ranges::find_if(
+        signs, [&](const auto& sign_text) { return rest.starts_with(sign_text.first); });
+    const auto* const letter = std::ranges::find_if(letters, [&](const auto& greek) {
+      return rest.starts_with(greek.first) && stands_alone(text, index, greek.first.size());
     });
     if (sign != std::end(signs)) {
       printed += sign->second;
-      at += sign->first.size();
+      index += sign->first.size();
     } else if (letter != std::end(letters)) {
       printed += letter->second;
-      at += letter->first.size();
+      index += letter->first.size();
     } else {
-      printed += text[at++];
+      printed += text[index++];
     }
   }
   replace_powers(printed);

@@ -16,7 +16,7 @@ namespace {
 std::string words(const Container& container) {
   const Vec3 size = extent(container);
   std::string title =
-      std::visit([](const auto& one) { return std::string(one.about.title); }, container);
+      std::visit([](const auto& box) { return std::string(box.description.title); }, container);
   title.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(title.front())));
   if (Boundary(container).tube) return finite_text("{}, {} diameters wide", title, size.x);
   if (size.z > 0) return finite_text("{}, {} x {} x {} diameters", title, size.x, size.y, size.z);

@@ -28,10 +28,10 @@ std::vector<Value> kept_values(const std::vector<Value>& values,
     }
     rows = std::move(next);
   }
-  std::vector<Value> out;
-  out.reserve(rows.size());
-  for (const std::size_t row : rows) out.push_back(values[row]);
-  return out;
+  std::vector<Value> selected;
+  selected.reserve(rows.size());
+  for (const std::size_t row : rows) selected.push_back(values[row]);
+  return selected;
 }
 
 /// Places along its last axis where a quantity has its least and its greatest value, of each row at
@@ -76,13 +76,13 @@ std::vector<std::size_t> extremes_of(std::span<const double> values) {
   return {*least, *greatest};
 }
 
-std::vector<std::size_t> joined(std::vector<std::size_t> some,
-                                const std::vector<std::size_t>& others) {
-  some.insert(some.end(), others.begin(), others.end());
-  std::ranges::sort(some);
-  const auto repeated = std::ranges::unique(some);
-  some.erase(repeated.begin(), repeated.end());
-  return some;
+std::vector<std::size_t> joined(std::vector<std::size_t> first,
+                                const std::vector<std::size_t>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  std::ranges::sort(first);
+  const auto repeated = std::ranges::unique(first);
+  first.erase(repeated.begin(), repeated.end());
+  return first;
 }
 
 std::vector<std::size_t> evenly_spread(std::size_t n, std::size_t most) {
@@ -130,9 +130,9 @@ Table thinned(const Table& table, const TableThinning& thinning) {
   for (const auto& [axis, places] : extremes) {
     if (axis != "tap") kept[axis] = joined(std::move(kept[axis]), places);
   }
-  Table out{.name = table.name, .axes = {}, .quantities = {}, .notes = table.notes};
+  Table thinned_table{.name = table.name, .axes = {}, .quantities = {}, .notes = table.notes};
   const auto keep = [&](const Quantity& quantity, const std::vector<std::string>& axes,
-                        std::vector<Quantity>& into) {
+                        std::vector<Quantity>& target) {
     std::vector<std::size_t> shape;
     std::vector<const std::vector<std::size_t>*> places;
     std::size_t n = 1;
@@ -143,13 +143,15 @@ Table thinned(const Table& table, const TableThinning& thinning) {
       n *= shape.back();
     }
     if (n != size_of(quantity)) return;
-    Quantity one = quantity;
-    std::visit([&](auto& values) { values = kept_values(values, shape, places); }, one.values);
-    into.push_back(std::move(one));
+    Quantity thinned_quantity = quantity;
+    std::visit([&](auto& values) { values = kept_values(values, shape, places); },
+               thinned_quantity.values);
+    target.push_back(std::move(thinned_quantity));
   };
-  for (const Quantity& axis : table.axes) keep(axis, {axis.name}, out.axes);
-  for (const Quantity& quantity : table.quantities) keep(quantity, quantity.axes, out.quantities);
-  return out;
+  for (const Quantity& axis : table.axes) keep(axis, {axis.name}, thinned_table.axes);
+  for (const Quantity& quantity : table.quantities)
+    keep(quantity, quantity.axes, thinned_table.quantities);
+  return thinned_table;
 }
 
 std::size_t n_values(const Table& table) {

@@ -31,8 +31,8 @@ std::vector<std::size_t> logarithmically_spread(std::size_t n, std::size_t per_d
 std::vector<std::size_t> extremes_of(std::span<const double> values);
 
 /// All of both, ascending, each once.
-std::vector<std::size_t> joined(std::vector<std::size_t> some,
-                                const std::vector<std::size_t>& others);
+std::vector<std::size_t> joined(std::vector<std::size_t> first,
+                                const std::vector<std::size_t>& second);
 
 /// How much of a table's axes is kept.
 struct TableThinning {

@@ -20,9 +20,9 @@ FigurePanel measured_ageing(const TableView& table) {
           .y = {"A(t, t_W)" + unit_text(table.units("a")), AxisKind::logarithmic},
           .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double lag) {
             return FigureRow{.x = lag,
-                             .y = at(table.row("a", k), j),
-                             .low = at(table.row("a_low_68", k), j),
-                             .high = at(table.row("a_high_68", k), j)};
+                             .y = value_at(table.row("a", k), j),
+                             .low = value_at(table.row("a_low_68", k), j),
+                             .high = value_at(table.row("a_high_68", k), j)};
           })};
 }
 
@@ -36,20 +36,20 @@ FigurePanel fluctuations(const TableView& table) {
           .y = {"V(t, t_W)" + unit_text(table.units("v")), AxisKind::logarithmic},
           .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double lag) {
             return FigureRow{.x = lag,
-                             .y = at(table.row("v", k), j),
-                             .low = at(table.row("v_low_68", k), j),
-                             .high = at(table.row("v_high_68", k), j)};
+                             .y = value_at(table.row("v", k), j),
+                             .low = value_at(table.row("v_low_68", k), j),
+                             .high = value_at(table.row("v_high_68", k), j)};
           })};
 }
 
 std::string collapse_text(const TableView& table) {
-  const double after = table.value("collapse_relative"),
-               before = table.value("unscaled_collapse_relative");
-  if (!std::isfinite(after) || !std::isfinite(before)) {
+  const double scaled = table.value("collapse_relative"),
+               unscaled = table.value("unscaled_collapse_relative");
+  if (!std::isfinite(scaled) || !std::isfinite(unscaled)) {
     return " Curves whose fit does not limit the scales are missing.";
   }
   return finite_text(" The curves differ by {:.2g} of their values, and by {:.2g} before scaling.",
-                     after, before);
+                     scaled, unscaled);
 }
 
 FigurePanel scaled_ageing(const TableView& table) {
@@ -62,9 +62,9 @@ FigurePanel scaled_ageing(const TableView& table) {
           .x = {"t / τ(t_W)", AxisKind::logarithmic},
           .y = {"A / A_∞(t_W)"},
           .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double) {
-            return FigureRow{.x = at(table.row("scaled_lag", k), j),
-                             .y = at(table.row("scaled_a", k), j),
-                             .error = at(table.half_width_row("scaled_a", k), j)};
+            return FigureRow{.x = value_at(table.row("scaled_lag", k), j),
+                             .y = value_at(table.row("scaled_a", k), j),
+                             .error = value_at(table.half_width_row("scaled_a", k), j)};
           })};
 }
 
@@ -80,9 +80,9 @@ FigurePanel covariance_ratio(const TableView& table) {
       .y = {"C(t, t_W)"},
       .rules = {{.y = 0}},
       .series = by_waiting_time(table, [&](std::size_t k, std::size_t j, double lag) {
-        const double error = at(table.half_width_row("c", k), j);
+        const double error = value_at(table.half_width_row("c", k), j);
         return FigureRow{
-            .x = lag, .y = at(table.row("c", k), j), .error = error <= 1 ? error : no_value};
+            .x = lag, .y = value_at(table.row("c", k), j), .error = error <= 1 ? error : no_value};
       })};
 }
 
@@ -122,11 +122,11 @@ std::vector<FigureSeries> settings_of(const TableView& table) {
                     .colour = kind_colour(0),
                     .drawn = Drawn::joined_points,
                     .has_labels = true};
-  FigureSeries others{.name = "others",
-                      .colour = kind_colour(1),
-                      .drawn = Drawn::points,
-                      .symbol = 1,
-                      .hollow = true};
+  FigureSeries other_settings{.name = "others",
+                              .colour = kind_colour(1),
+                              .drawn = Drawn::points,
+                              .symbol = 1,
+                              .hollow = true};
   const std::vector<std::string> names = table.axis_texts("setting");
   for (std::size_t i = 0; i < names.size(); ++i) {
     const double error = table.half_width("bias", i);
@@ -134,15 +134,15 @@ std::vector<FigureSeries> settings_of(const TableView& table) {
                         .y = std::abs(table.value("bias", i)) + (std::isfinite(error) ? error : 0),
                         .label = names[i]};
     if (!(row.x > 0) || !(row.y > 0)) continue;
-    (table.value("pareto", i) == 1 ? best : others).rows.push_back(row);
+    (table.value("pareto", i) == 1 ? best : other_settings).rows.push_back(row);
   }
   std::ranges::stable_sort(best.rows, {}, &FigureRow::x);
-  return {std::move(best), std::move(others)};
+  return {std::move(best), std::move(other_settings)};
 }
 
 }  // namespace
 
-void add_steady(const DrawnFile& file, Figures& into) {
+void add_steady(const DrawnFile& file, Figures& figures) {
   const std::vector<TableView> made = file.made_of("analysis", "steady");
   for (const std::uint32_t point : points_of(file, made)) {
     for (const TableView& table : made) {
@@ -165,12 +165,12 @@ void add_steady(const DrawnFile& file, Figures& into) {
                        .drawn = Drawn::joined_points,
                        .rows = rows_of(table.axis("block_length"), table.values("block_error"),
                                        table.half_widths("block_error"))}}},
-          into, table.name());
+          figures, table.name());
     }
   }
 }
 
-void add_ageing(const DrawnFile& file, Figures& into) {
+void add_ageing(const DrawnFile& file, Figures& figures) {
   const std::vector<TableView> made = file.made_of("analysis", "ageing");
   for (const std::uint32_t point : points_of(file, made)) {
     for (const TableView& table : made) {
@@ -178,13 +178,13 @@ void add_ageing(const DrawnFile& file, Figures& into) {
       for (FigurePanel& panel :
            std::vector<FigurePanel>{measured_ageing(table), fluctuations(table),
                                     scaled_ageing(table), covariance_ratio(table)}) {
-        add_panel(file, point, std::move(panel), into, table.name());
+        add_panel(file, point, std::move(panel), figures, table.name());
       }
     }
   }
 }
 
-void add_spectra(const DrawnFile& file, Figures& into) {
+void add_spectra(const DrawnFile& file, Figures& figures) {
   const std::vector<TableView> made = file.made_of("analysis", "spectrum");
   std::vector<std::string> observables;
   for (const TableView& table : made) {
@@ -225,11 +225,11 @@ void add_spectra(const DrawnFile& file, Figures& into) {
                                 .point = point.number});
       }
     }
-    add_panel(file, std::nullopt, std::move(panel), into);
+    add_panel(file, std::nullopt, std::move(panel), figures);
   }
 }
 
-void add_cost(const DrawnFile& file, Figures& into) {
+void add_cost(const DrawnFile& file, Figures& figures) {
   for (const TableView& table : file.made_of("analysis", "cost")) {
     const std::string reference = table.note("reference");
     add_panel(file, std::nullopt,
@@ -242,7 +242,7 @@ void add_cost(const DrawnFile& file, Figures& into) {
                .y = {"|bias| + half its 68 % interval" + unit_text(table.units("bias")),
                      AxisKind::logarithmic},
                .series = settings_of(table)},
-              into, table.name());
+              figures, table.name());
   }
 }
 

@@ -15,27 +15,27 @@ namespace jostle::inline study {
 
 using Figures = std::vector<Figure>;
 
-void add_compaction(const DrawnFile& file, Figures& into);
-void add_spread(const DrawnFile& file, Figures& into);
-void add_fits(const DrawnFile& file, Figures& into);
-void add_steady(const DrawnFile& file, Figures& into);
-void add_ageing(const DrawnFile& file, Figures& into);
-void add_spectra(const DrawnFile& file, Figures& into);
-void add_hysteresis(const DrawnFile& file, Figures& into);
-void add_sweeps(const DrawnFile& file, Figures& into);
-void add_ordering(const DrawnFile& file, Figures& into);
-void add_motion(const DrawnFile& file, Figures& into);
-void add_volumes(const DrawnFile& file, Figures& into);
-void add_memory(const DrawnFile& file, Figures& into);
-void add_snapshots(const DrawnFile& file, Figures& into);
-void add_structure(const DrawnFile& file, Figures& into);
-void add_engine(const DrawnFile& file, Figures& into);
-void add_cost(const DrawnFile& file, Figures& into);
+void add_compaction(const DrawnFile& file, Figures& figures);
+void add_spread(const DrawnFile& file, Figures& figures);
+void add_fits(const DrawnFile& file, Figures& figures);
+void add_steady(const DrawnFile& file, Figures& figures);
+void add_ageing(const DrawnFile& file, Figures& figures);
+void add_spectra(const DrawnFile& file, Figures& figures);
+void add_hysteresis(const DrawnFile& file, Figures& figures);
+void add_sweeps(const DrawnFile& file, Figures& figures);
+void add_ordering(const DrawnFile& file, Figures& figures);
+void add_motion(const DrawnFile& file, Figures& figures);
+void add_volumes(const DrawnFile& file, Figures& figures);
+void add_memory(const DrawnFile& file, Figures& figures);
+void add_snapshots(const DrawnFile& file, Figures& figures);
+void add_structure(const DrawnFile& file, Figures& figures);
+void add_engine(const DrawnFile& file, Figures& figures);
+void add_cost(const DrawnFile& file, Figures& figures);
 
 /// Adds the figure of one panel; its name contains the sweep point where the file has several and
 /// it shows one. `subject`: the table that it draws, or the observable of several.
 void add_panel(const DrawnFile& file, std::optional<std::uint32_t> point, FigurePanel panel,
-               Figures& into, const std::string& subject = "");
+               Figures& figures, const std::string& subject = "");
 
 /// "stretched exponential" of "kww".
 std::string law_name(const std::string& model);
@@ -49,7 +49,7 @@ struct FittedLaws {
 std::vector<FittedLaws> fitted_laws(const std::vector<TableView>& made, std::uint32_t point);
 
 /// One of the values, or none.
-inline double at(const std::vector<double>& values, std::size_t i) {
+inline double value_at(const std::vector<double>& values, std::size_t i) {
   return i < values.size() ? values[i] : no_value;
 }
 
@@ -60,15 +60,15 @@ std::vector<FigureSeries> by_waiting_time(const TableView& table, MakeRow make_r
   const std::vector<double> ages = table.axis("waiting_time"), lags = table.axis("lag");
   std::vector<FigureSeries> series;
   for (std::size_t k = 0; k < ages.size(); ++k) {
-    FigureSeries one{.name = fmt::format("t_W = {}", ages[k]),
-                     .colour = colour_of(k, ages.size()),
-                     .drawn = Drawn::joined_points,
-                     .symbol = series.size()};
+    FigureSeries age_series{.name = fmt::format("t_W = {}", ages[k]),
+                            .colour = colour_of(k, ages.size()),
+                            .drawn = Drawn::joined_points,
+                            .symbol = series.size()};
     for (std::size_t j = 0; j < lags.size(); ++j) {
       FigureRow row = make_row(k, j, lags[j]);
-      if (std::isfinite(row.y)) one.rows.push_back(std::move(row));
+      if (std::isfinite(row.y)) age_series.rows.push_back(std::move(row));
     }
-    if (!one.rows.empty()) series.push_back(std::move(one));
+    if (!age_series.rows.empty()) series.push_back(std::move(age_series));
   }
   return series;
 }

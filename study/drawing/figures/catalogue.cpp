@@ -86,7 +86,8 @@ Json panel_json(const FigurePanel& panel, Digits digits) {
   for (const FigureRule& rule : panel.rules) {
     rules.push_back({{rule.x ? "x" : "y", page_number(rule.x ? *rule.x : *rule.y)}});
   }
-  for (const FigureSeries& one : panel.series) series.push_back(series_json(one, digits));
+  for (const FigureSeries& drawn_series : panel.series)
+    series.push_back(series_json(drawn_series, digits));
   return {{"title", page_text(panel.title)},
           {"caption", page_text(panel.caption)},
           {"source", page_text(panel.source)},

@@ -27,7 +27,7 @@ Json catalogue_json(const std::vector<Json>& figures, const std::vector<std::str
 std::string figure_csv(const Figure& figure);
 
 /// Widths of a journal's page.
-enum class JournalColumns { one = 1, two = 2 };
+enum class JournalColumns { single = 1, two = 2 };
 
 /// The script that draws NAME.pdf and NAME.svg again from NAME.json. It holds no text of the
 /// figure.

@@ -38,14 +38,14 @@ std::vector<FigureSeries> column_series(const DrawnFile& file, const std::string
   std::vector<FigureSeries> series;
   for (const ShownPoint& point : file.shown_points()) {
     const DrawnCurve& curve = *file.curve(point.number);
-    FigureSeries one{.name = point.label, .colour = point.colour, .point = point.number};
+    FigureSeries point_series{.name = point.label, .colour = point.colour, .point = point.number};
     for (const DrawnColumn& column : curve.columns) {
       if (column.label.name != name) continue;
       const std::vector<double> taps(curve.taps.begin(), curve.taps.end());
-      one.rows = shows == Shows::mean ? rows_of(taps, column.mean, column.half_width)
-                                      : rows_of(taps, column.sigma);
+      point_series.rows = shows == Shows::mean ? rows_of(taps, column.mean, column.half_width)
+                                               : rows_of(taps, column.sigma);
     }
-    series.push_back(std::move(one));
+    series.push_back(std::move(point_series));
   }
   return series;
 }
@@ -58,11 +58,11 @@ std::vector<FigureSeries> realization_series(const DrawnFile& file, const std::s
     const std::vector<double> taps(curve.taps.begin(), curve.taps.end());
     for (const DrawnColumn& column : curve.columns) {
       if (column.label.name != name) continue;
-      for (const DrawnRealization& one : column.realizations) {
-        const std::string label = fmt::format("realization {}", one.number);
+      for (const DrawnRealization& realization : column.realizations) {
+        const std::string label = fmt::format("realization {}", realization.number);
         series.push_back({.name = point.label.empty() ? label : point.label + ", " + label,
                           .colour = point.colour,
-                          .rows = rows_of(taps, one.values),
+                          .rows = rows_of(taps, realization.values),
                           .is_thin = true,
                           .point = point.number});
       }
@@ -71,7 +71,7 @@ std::vector<FigureSeries> realization_series(const DrawnFile& file, const std::s
   return series;
 }
 
-void add_mean(const DrawnFile& file, const std::string& name, Figures& into) {
+void add_mean(const DrawnFile& file, const std::string& name, Figures& figures) {
   const Column& label = file.column(name)->label;
   const std::string errors = file.n_realizations() > 1
                                  ? "the band is the 68 % interval of the mean over realizations"
@@ -90,13 +90,13 @@ void add_mean(const DrawnFile& file, const std::string& name, Figures& into) {
              .x = file.tap_axis(),
              .y = {axis_label(name, label.units)},
              .series = std::move(series)},
-            into);
+            figures);
 }
 
 constexpr std::string_view kind_height = "height_";  // before the name of the kind
 
 /// The heights of a mixture's kinds in one figure, at each of the shown sweep points.
-void add_kind_heights(const DrawnFile& file, Figures& into) {
+void add_kind_heights(const DrawnFile& file, Figures& figures) {
   std::vector<std::uint32_t> points;
   for (const DrawnCurve& curve : file.curves()) points.push_back(curve.point);
   for (const std::uint32_t point : file.chosen(points)) {
@@ -123,19 +123,19 @@ void add_kind_heights(const DrawnFile& file, Figures& into) {
          .x = file.tap_axis(),
          .y = {"height z" + unit_text(units)},
          .series = std::move(series)},
-        into, "kind_heights");
+        figures, "kind_heights");
   }
 }
 
 }  // namespace
 
-void add_compaction(const DrawnFile& file, Figures& into) {
+void add_compaction(const DrawnFile& file, Figures& figures) {
   const auto is_observable = [](const DrawnColumn& column) { return column.is_observable; };
-  for (const std::string& name : names_of(file, is_observable)) add_mean(file, name, into);
-  add_kind_heights(file, into);
+  for (const std::string& name : names_of(file, is_observable)) add_mean(file, name, figures);
+  add_kind_heights(file, figures);
 }
 
-void add_spread(const DrawnFile& file, Figures& into) {
+void add_spread(const DrawnFile& file, Figures& figures) {
   if (file.n_realizations() < 2) return;
   const auto varies = [](const DrawnColumn& column) {
     return column.is_observable &&
@@ -154,21 +154,21 @@ void add_spread(const DrawnFile& file, Figures& into) {
          .y = {fmt::format("σ of {}{}", words(name), unit_text(file.column(name)->label.units)),
                AxisKind::linear, true},
          .series = column_series(file, name, Shows::sigma)},
-        into);
+        figures);
   }
 }
 
-void add_engine(const DrawnFile& file, Figures& into) {
+void add_engine(const DrawnFile& file, Figures& figures) {
   const auto is_told = [](const DrawnColumn& column) {
     return !column.is_observable && column.label.shown != Shown::count &&
            column.label.shown != Shown::share && std::ranges::any_of(column.mean, [](double mean) {
              return mean != 0 && std::isfinite(mean);
            });
   };
-  for (const std::string& name : names_of(file, is_told)) add_mean(file, name, into);
+  for (const std::string& name : names_of(file, is_told)) add_mean(file, name, figures);
 }
 
-void add_snapshots(const DrawnFile& file, Figures& into) {
+void add_snapshots(const DrawnFile& file, Figures& figures) {
   std::vector<FigureSeries> series;
   for (const ShownPoint& point : file.shown_points()) {
     for (const DrawnSnapshots& kept : file.snapshots()) {
@@ -193,7 +193,7 @@ void add_snapshots(const DrawnFile& file, Figures& into) {
          .x = file.tap_axis(),
          .y = {"mean coordination N_c"},
          .series = std::move(series)},
-        into, "coordination");
+        figures, "coordination");
   }
   if (!file.made_of("structure", "layers").empty()) return;  // they have n(z), with errors
   std::vector<std::uint32_t> points;
@@ -220,7 +220,7 @@ void add_snapshots(const DrawnFile& file, Figures& into) {
                               .colour = colour_of(k, kept.heights.size()),
                               .rows = rows_of(heights, kept.heights[k].n)});
     }
-    add_panel(file, point, std::move(panel), into, "heights");
+    add_panel(file, point, std::move(panel), figures, "heights");
   }
 }
 

@@ -30,8 +30,8 @@ std::string viridis(double share) {
   const auto i = std::min(static_cast<std::size_t>(place), viridis_stops.size() - 2);
   std::string text = "#";
   for (std::size_t k = 0; k < 3; ++k) {
-    const double from = viridis_stops[i][k], to = viridis_stops[i + 1][k];
-    text += fmt::format("{:02x}", std::lround(from + (to - from) * (place - double(i))));
+    const double low = viridis_stops[i][k], high = viridis_stops[i + 1][k];
+    text += fmt::format("{:02x}", std::lround(low + (high - low) * (place - double(i))));
   }
   return text;
 }
@@ -73,7 +73,7 @@ DrawnFile::DrawnFile(const ResultsFile& file, const DrawnRoom& room,
       n_realizations_(file.study().realizations),
       drawn_points_(drawn),
       changes_strength_(changes_strength(file)) {
-  for (const DrawnTable& one : kept_) tables_.emplace_back(one);
+  for (const DrawnTable& table : kept_) tables_.emplace_back(table);
   for (const TableView& table : tables_) {  // in a study of cost, the points are settings
     if (table.is_in("analysis", "cost") && table.axis_texts("setting").size() == labels_.size()) {
       labels_ = table.axis_texts("setting");
@@ -87,7 +87,7 @@ DrawnFile::DrawnFile(const ResultsFile& file, const DrawnRoom& room,
 }
 
 DrawnFile::DrawnFile(std::vector<DrawnTable> tables) : kept_(std::move(tables)), labels_{""} {
-  for (const DrawnTable& one : kept_) tables_.emplace_back(one);
+  for (const DrawnTable& table : kept_) tables_.emplace_back(table);
 }
 
 std::vector<TableView> DrawnFile::made_of(const std::string& group, const std::string& kind) const {
@@ -129,8 +129,8 @@ std::vector<std::uint32_t> DrawnFile::chosen(std::vector<std::uint32_t> numbers)
 }
 
 const DrawnCurve* DrawnFile::curve(std::uint32_t point) const {
-  const auto at = std::ranges::find(curves_, point, &DrawnCurve::point);
-  return at == curves_.end() ? nullptr : &*at;
+  const auto found = std::ranges::find(curves_, point, &DrawnCurve::point);
+  return found == curves_.end() ? nullptr : &*found;
 }
 
 const DrawnColumn* DrawnFile::column(const std::string& name) const {
@@ -159,8 +159,8 @@ std::string unit_text(const std::string& units) {
     text = text.substr(1, end - 1) + text.substr(end + 1);  // "(diameter)^2"
   }
   for (const auto& [power, sign] : {std::pair{"^2", "²"}, std::pair{"^3", "³"}}) {
-    for (std::size_t at = 0; (at = text.find(power)) != std::string::npos;) {
-      text.replace(at, 2, sign);
+    for (std::size_t index = 0; (index = text.find(power)) != std::string::npos;) {
+      text.replace(index, 2, sign);
     }
   }
   return " (" + text + ")";
@@ -199,8 +199,8 @@ std::string control_label(const std::string& name, const std::string& units) {
 }
 
 std::string control_of(const TableView& table) {
-  for (const ControlName& one : controls) {
-    if (table.has(one.name)) return one.name;
+  for (const ControlName& control : controls) {
+    if (table.has(control.name)) return control.name;
   }
   return "";
 }

@@ -51,15 +51,15 @@ std::string file_word(const std::string& text) {
 }
 
 void add_panel(const DrawnFile& file, std::optional<std::uint32_t> point, FigurePanel panel,
-               Figures& into, const std::string& subject) {
+               Figures& figures, const std::string& subject) {
   if (!has_values(panel)) return;
   const std::string number =
       point && file.n_points() > 1 ? fmt::format("-point-{:04}", *point) : "";
   const std::string name = file_word(panel.title) + number;
   if (!number.empty()) panel.caption += fmt::format(" Sweep point {}.", file.label(*point));
   panel.caption = in_print(panel.caption);
-  into.push_back({.name = name, .point = point, .subject = subject});
-  into.back().panels.push_back(std::move(panel));
+  figures.push_back({.name = name, .point = point, .subject = subject});
+  figures.back().panels.push_back(std::move(panel));
 }
 
 std::vector<std::uint32_t> points_of(const DrawnFile& file, const std::vector<TableView>& tables) {

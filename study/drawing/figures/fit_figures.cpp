@@ -123,15 +123,15 @@ std::vector<FittedLaws> fitted_laws(const std::vector<TableView>& made, std::uin
   return curves;
 }
 
-void add_fits(const DrawnFile& file, Figures& into) {
+void add_fits(const DrawnFile& file, Figures& figures) {
   std::vector<TableView> made;
   for (const TableView& table : file.made_of("fits")) {
     if (table.has("fitted")) made.push_back(table);
   }
   for (const std::uint32_t point : points_of(file, made)) {
     for (const FittedLaws& curve : fitted_laws(made, point)) {
-      add_panel(file, point, data_panel(curve.laws, curve.observable), into, curve.observable);
-      into.back().panels.push_back(residual_panel(curve.laws, curve.observable));
+      add_panel(file, point, data_panel(curve.laws, curve.observable), figures, curve.observable);
+      figures.back().panels.push_back(residual_panel(curve.laws, curve.observable));
     }
   }
 }

@@ -27,7 +27,7 @@ class ByLag {
   ByLag(const TableView& table, std::vector<double> values, std::size_t n)
       : values_(std::move(values)), n_lags_(table.axis("lag").size()), n_(n) {}
   double operator()(std::size_t k, std::size_t j, std::size_t place = 0) const {
-    return at(values_, (k * n_lags_ + j) * n_ + place);
+    return value_at(values_, (k * n_lags_ + j) * n_ + place);
   }
 
  private:
@@ -36,10 +36,10 @@ class ByLag {
 };
 
 FigurePanel squares(const TableView& table, const std::string& name, const std::string& title,
-                    const std::string& what) {
+                    const std::string& ordinate) {
   const ByLag square(table, name, 1), error(table, table.half_widths(name), 1);
   return {.title = title,
-          .caption = what +
+          .caption = ordinate +
                      " in a lag t from the waiting time t_W on, mean over spheres and "
                      "realizations; bars are 68 % intervals.",
           .source = table.source(name),
@@ -77,56 +77,57 @@ FigurePanel by_height(const TableView& table) {
       .x = {"height (diameter)"},
       .y = {"mean square" + unit_text(table.units(name)), AxisKind::logarithmic}};
   for (std::size_t k = 0; k < ages.size(); ++k) {
-    FigureSeries one{.name = fmt::format("t_W = {}", ages[k]),
-                     .colour = colour_of(k, ages.size()),
-                     .drawn = Drawn::joined_points,
-                     .symbol = k};
+    FigureSeries series{.name = fmt::format("t_W = {}", ages[k]),
+                        .colour = colour_of(k, ages.size()),
+                        .drawn = Drawn::joined_points,
+                        .symbol = k};
     for (std::size_t layer = 0; layer < n; ++layer)
-      one.rows.push_back({.x = height(k, longest, layer),
-                          .y = square(k, longest, layer),
-                          .error = error(k, longest, layer)});
-    panel.series.push_back(std::move(one));
+      series.rows.push_back({.x = height(k, longest, layer),
+                             .y = square(k, longest, layer),
+                             .error = error(k, longest, layer)});
+    panel.series.push_back(std::move(series));
   }
   return panel;
 }
 
 /// A curve of every kind, from the first waiting time on.
 FigurePanel by_kind(const TableView& table, const std::string& name, const std::string& title,
-                    const std::string& what, const FigureAxis& y) {
+                    const std::string& ordinate, const FigureAxis& y) {
   const std::vector<std::string> kinds = table.axis_texts("kind");
   const std::vector<double> ages = table.axis("waiting_time"), lags = table.axis("lag");
   const ByLag value(table, name, kinds.size()), error(table, table.half_widths(name), kinds.size());
   FigurePanel panel{.title = title,
                     .caption = fmt::format("{} in a lag t from tap {} on, of each kind, mean over "
                                            "realizations; bars are 68 % intervals.",
-                                           what, ages.front()),
+                                           ordinate, ages.front()),
                     .source = table.source(name),
                     .x = {"lag t (taps)", AxisKind::logarithmic},
                     .y = {y.label + unit_text(table.units(name)), y.kind}};
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-    FigureSeries one{.name = kinds[kind],
-                     .colour = kind_colour(kind),
-                     .drawn = Drawn::joined_points,
-                     .symbol = kind};
+    FigureSeries series{.name = kinds[kind],
+                        .colour = kind_colour(kind),
+                        .drawn = Drawn::joined_points,
+                        .symbol = kind};
     for (std::size_t j = 0; j < lags.size(); ++j) {
       if (std::isfinite(value(0, j, kind)))
-        one.rows.push_back({.x = lags[j], .y = value(0, j, kind), .error = error(0, j, kind)});
+        series.rows.push_back({.x = lags[j], .y = value(0, j, kind), .error = error(0, j, kind)});
     }
-    if (!one.rows.empty()) panel.series.push_back(std::move(one));
+    if (!series.rows.empty()) panel.series.push_back(std::move(series));
   }
   return panel;
 }
 
-void add_kinds(const DrawnFile& file, std::uint32_t point, const TableView& table, Figures& into) {
+void add_kinds(const DrawnFile& file, std::uint32_t point, const TableView& table,
+               Figures& figures) {
   add_panel(file, point,
             by_kind(table, "rise", "Rise of the kinds in the bed",
                     "Mean vertical displacement less that of all spheres", {"rise"}),
-            into);
+            figures);
   add_panel(
       file, point,
       by_kind(table, "msd_lateral", "Lateral motion of the kinds",
               "Mean square of the lateral displacement", {"mean square", AxisKind::logarithmic}),
-      into);
+      figures);
 }
 
 /// At the overlap length where the susceptibility is greatest.
@@ -161,24 +162,24 @@ FigurePanel susceptibility(const TableView& table) {
 
 }  // namespace
 
-void add_motion(const DrawnFile& file, Figures& into) {
+void add_motion(const DrawnFile& file, Figures& figures) {
   const std::vector<TableView> made = file.made_of("analysis", "motion");
   for (const std::uint32_t point : points_of(file, made)) {
     if (const auto table = table_of(made, point, "displacement")) {
       add_panel(
           file, point,
           squares(*table, "msd_lateral", "Lateral motion", "Square of the lateral displacement"),
-          into);
+          figures);
       add_panel(file, point,
                 squares(*table, "msd_z_about_mean", "Vertical motion about the settling",
                         "Square of the vertical displacement less its mean over the bed,"),
-                into);
+                figures);
     }
     if (const auto table = table_of(made, point, "layers"))
-      add_panel(file, point, by_height(*table), into);
-    if (const auto table = table_of(made, point, "kinds")) add_kinds(file, point, *table, into);
+      add_panel(file, point, by_height(*table), figures);
+    if (const auto table = table_of(made, point, "kinds")) add_kinds(file, point, *table, figures);
     if (const auto table = table_of(made, point, "overlap"))
-      add_panel(file, point, susceptibility(*table), into);
+      add_panel(file, point, susceptibility(*table), figures);
   }
 }
 

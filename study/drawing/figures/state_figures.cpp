@@ -90,7 +90,7 @@ FigurePanel response(const TableView& table) {
 
 }  // namespace
 
-void add_ordering(const DrawnFile& file, Figures& into) {
+void add_ordering(const DrawnFile& file, Figures& figures) {
   std::vector<TableView> made = file.made_of("analysis", "ordering");
   std::erase_if(made, [](const TableView& table) { return !table.point(); });
   std::vector<std::string> observables;
@@ -110,34 +110,36 @@ void add_ordering(const DrawnFile& file, Figures& into) {
             "bars are 95 % intervals.",
             table.note("rule"));
         panel.source = table.source("survival");
-        FigureSeries one{.name = point.label,
-                         .colour = point.colour,
-                         .drawn = Drawn::stepped_points,
-                         .symbol = panel.series.size(),
-                         .point = point.number};
+        FigureSeries series{.name = point.label,
+                            .colour = point.colour,
+                            .drawn = Drawn::stepped_points,
+                            .symbol = panel.series.size(),
+                            .point = point.number};
         const std::vector<double> taps = table.axis("tap"), share = table.values("survival"),
                                   low = table.values("survival_low_95"),
                                   high = table.values("survival_high_95");
         for (std::size_t i = 0; i < taps.size(); ++i)
-          one.rows.push_back(
-              {.x = taps[i], .y = at(share, i), .low = at(low, i), .high = at(high, i)});
-        panel.series.push_back(std::move(one));
+          series.rows.push_back({.x = taps[i],
+                                 .y = value_at(share, i),
+                                 .low = value_at(low, i),
+                                 .high = value_at(high, i)});
+        panel.series.push_back(std::move(series));
       }
     }
-    add_panel(file, std::nullopt, std::move(panel), into);
+    add_panel(file, std::nullopt, std::move(panel), figures);
   }
 }
 
-void add_volumes(const DrawnFile& file, Figures& into) {
+void add_volumes(const DrawnFile& file, Figures& figures) {
   for (const TableView& table : file.made_of("analysis", "volumes")) {
-    add_panel(file, std::nullopt, compactivity(table), into, table.name());
-    add_panel(file, std::nullopt, variances(table), into, table.name());
+    add_panel(file, std::nullopt, compactivity(table), figures, table.name());
+    add_panel(file, std::nullopt, variances(table), figures, table.name());
   }
 }
 
-void add_memory(const DrawnFile& file, Figures& into) {
+void add_memory(const DrawnFile& file, Figures& figures) {
   for (const TableView& table : file.made_of("analysis", "memory"))
-    add_panel(file, std::nullopt, response(table), into, table.name());
+    add_panel(file, std::nullopt, response(table), figures, table.name());
 }
 
 }  // namespace jostle::inline study

@@ -31,8 +31,8 @@ std::vector<PointTable> tables_of_points(const DrawnFile& file,
 std::optional<double> last_common_tap(const std::vector<PointTable>& tables) {
   const std::vector<double> taps = tables.front().table->axis("tap");
   for (std::size_t i = taps.size(); i-- > 0;) {
-    const bool is_common = std::ranges::all_of(tables, [&](const PointTable& one) {
-      const std::vector<double> own = one.table->axis("tap");
+    const bool is_common = std::ranges::all_of(tables, [&](const PointTable& table) {
+      const std::vector<double> own = table.table->axis("tap");
       return std::ranges::find(own, taps[i]) != own.end();
     });
     if (is_common) return taps[i];
@@ -46,7 +46,7 @@ std::size_t place_of(const TableView& table, double tap) {
 }
 
 void add_curves(const DrawnFile& file, const std::vector<PointTable>& tables, const PartPlot& plot,
-                double tap, Figures& into) {
+                double tap, Figures& figures) {
   const TableView& first = *tables.front().table;
   if (!first.has(plot.y) || !first.has_axis(plot.x)) return;
   FigurePanel panel = panel_of(first, plot);
@@ -67,7 +67,7 @@ void add_curves(const DrawnFile& file, const std::vector<PointTable>& tables, co
   }
   if (panel.series.size() < 2) return;
   finish_panel(plot, panel);
-  add_panel(file, std::nullopt, std::move(panel), into, comparison_subject);
+  add_panel(file, std::nullopt, std::move(panel), figures, comparison_subject);
 }
 
 bool has_value(const TableView& table, const char* name) {
@@ -76,7 +76,7 @@ bool has_value(const TableView& table, const char* name) {
 
 /// The first number that is not 0 everywhere, against taps.
 void add_numbers(const DrawnFile& file, const std::vector<PointTable>& tables,
-                 const std::vector<NumberTrend>& trends, Figures& into) {
+                 const std::vector<NumberTrend>& trends, Figures& figures) {
   for (const NumberTrend& trend : trends) {
     const char* const name = trend.names.front();
     const TableView& first = *tables.front().table;
@@ -97,23 +97,23 @@ void add_numbers(const DrawnFile& file, const std::vector<PointTable>& tables,
            .symbol = panel.series.size(),
            .point = point.number});
     }
-    add_panel(file, std::nullopt, std::move(panel), into, comparison_subject);
+    add_panel(file, std::nullopt, std::move(panel), figures, comparison_subject);
     return;
   }
 }
 
 }  // namespace
 
-void add_structure_of_points(const DrawnFile& file, Figures& into) {
+void add_structure_of_points(const DrawnFile& file, Figures& figures) {
   for (const DrawnPart& part : drawn_parts()) {
     const std::vector<TableView> made = file.made_of("structure", part.name);
     const std::vector<PointTable> tables = tables_of_points(file, made);
     if (tables.size() < 2) continue;
-    const std::size_t n_before = into.size();
+    const std::size_t n_before = figures.size();
     const std::optional<double> tap = last_common_tap(tables);
-    if (tap && !part.plots.empty()) add_curves(file, tables, part.plots.front(), *tap, into);
-    add_numbers(file, tables, part.trends, into);
-    for (std::size_t i = n_before; i < into.size(); ++i) into[i].section = part.name;
+    if (tap && !part.plots.empty()) add_curves(file, tables, part.plots.front(), *tap, figures);
+    add_numbers(file, tables, part.trends, figures);
+    for (std::size_t i = n_before; i < figures.size(); ++i) figures[i].section = part.name;
   }
 }
 

@@ -15,7 +15,8 @@ std::vector<std::size_t> tap_places(const TableView& table) {
   return evenly_spread(table.axis("tap").size(), most_taps);
 }
 
-void add_plot(const DrawnFile& file, const TableView& table, const PartPlot& plot, Figures& into) {
+void add_plot(const DrawnFile& file, const TableView& table, const PartPlot& plot,
+              Figures& figures) {
   if (!table.has(plot.y) || !table.has_axis(plot.x)) return;
   const std::vector<std::size_t> places = tap_places(table);
   const std::vector<double> taps = table.axis("tap");
@@ -35,20 +36,20 @@ void add_plot(const DrawnFile& file, const TableView& table, const PartPlot& plo
                             .symbol = panel.series.size()});
   }
   if (panel.series.empty()) return;
-  for (std::size_t k = 0; plot.beside != nullptr && table.has(plot.beside) && k < places.size();
-       ++k) {
+  for (std::size_t k = 0;
+       plot.companion != nullptr && table.has(plot.companion) && k < places.size(); ++k) {
     panel.series.push_back({.name = k == 0 ? plot.beside_name : "",
                             .colour = colour_of(k, places.size()),
-                            .rows = rows_at(table, plot, plot.beside, false, places[k]),
+                            .rows = rows_at(table, plot, plot.companion, false, places[k]),
                             .dash = 1,
                             .has_band = false});
   }
   finish_panel(plot, panel);
-  add_panel(file, table.point(), std::move(panel), into);
+  add_panel(file, table.point(), std::move(panel), figures);
 }
 
 void add_trends(const DrawnFile& file, const TableView& table, const DrawnPart& part,
-                Figures& into) {
+                Figures& figures) {
   constexpr std::size_t fewest_taps = 3, most_trends = 2;
   const std::vector<double> taps = table.axis("tap");
   if (taps.size() < fewest_taps) return;
@@ -83,12 +84,12 @@ void add_trends(const DrawnFile& file, const TableView& table, const DrawnPart& 
     panel.title = sentence(title) + " by tap";
     panel.caption += "; means over realizations with 68 % intervals.";
     panel.y.label += unit_text(table.units(trend.names.front()));
-    add_panel(file, table.point(), std::move(panel), into);
+    add_panel(file, table.point(), std::move(panel), figures);
   }
 }
 
 void add_holes(const DrawnFile& file, const TableView& table, const std::string& quantity,
-               const std::string& title, Figures& into) {
+               const std::string& title, Figures& figures) {
   if (!table.has(quantity)) return;
   const std::vector<std::string> names = table.axis_texts("hole");
   const std::vector<std::size_t> places = tap_places(table);
@@ -110,17 +111,17 @@ void add_holes(const DrawnFile& file, const TableView& table, const std::string&
                      .label = words(names[j])};
   };
   for (std::size_t k = 0; k < places.size(); ++k) {
-    FigureSeries one{.name = fmt::format("tap {}", taps[places[k]]),
-                     .colour = colour_of(k, places.size()),
-                     .drawn = Drawn::points,
-                     .symbol = k};
+    FigureSeries series{.name = fmt::format("tap {}", taps[places[k]]),
+                        .colour = colour_of(k, places.size()),
+                        .drawn = Drawn::points,
+                        .symbol = k};
     const double shift =
         (static_cast<double>(k) - static_cast<double>(places.size() - 1) / 2) * 0.09;
     for (std::size_t j = 0; j < names.size(); ++j) {
-      one.rows.push_back(row_at(j, shift, table.row(quantity, places[k]),
-                                table.half_width_row(quantity, places[k])));
+      series.rows.push_back(row_at(j, shift, table.row(quantity, places[k]),
+                                   table.half_width_row(quantity, places[k])));
     }
-    panel.series.push_back(std::move(one));
+    panel.series.push_back(std::move(series));
   }
   FigureSeries published{.name = "published",
                          .colour = ink_colour(),
@@ -131,12 +132,12 @@ void add_holes(const DrawnFile& file, const TableView& table, const std::string&
     published.rows.push_back(row_at(j, 0.34, table.row(quantity + "_published", 0), {}));
   }
   panel.series.push_back(std::move(published));
-  add_panel(file, table.point(), std::move(panel), into);
+  add_panel(file, table.point(), std::move(panel), figures);
 }
 
 /// g_ij of each two kinds of a mixture at the last of the kept taps.
 void add_partial_pairs(const DrawnFile& file, const TableView& table, const PartPlot& plot,
-                       Figures& into) {
+                       Figures& figures) {
   const std::vector<double> taps = table.axis("tap");
   if (taps.empty()) return;
   FigurePanel panel{
@@ -157,29 +158,29 @@ void add_partial_pairs(const DrawnFile& file, const TableView& table, const Part
   }
   if (panel.series.empty()) return;
   finish_panel(plot, panel);
-  add_panel(file, table.point(), std::move(panel), into);
+  add_panel(file, table.point(), std::move(panel), figures);
 }
 
 }  // namespace
 
-void add_structure(const DrawnFile& file, Figures& into) {
-  add_structure_of_points(file, into);
+void add_structure(const DrawnFile& file, Figures& figures) {
+  add_structure_of_points(file, figures);
   for (const DrawnPart& part : drawn_parts()) {
     const std::vector<TableView> made = file.made_of("structure", part.name);
     for (const std::uint32_t point : points_of(file, made)) {
-      const std::size_t n_before = into.size();
+      const std::size_t n_before = figures.size();
       const auto own = std::ranges::find_if(
           made, [&](const TableView& table) { return table.point() == point; });
       if (own == made.end()) continue;
       if (std::string_view(part.name) == "holes") {
-        add_holes(file, *own, "number_fraction", "Holes by number", into);
-        add_holes(file, *own, "volume_fraction", "Holes by volume", into);
+        add_holes(file, *own, "number_fraction", "Holes by number", figures);
+        add_holes(file, *own, "volume_fraction", "Holes by volume", figures);
       }
-      for (const PartPlot& plot : part.plots) add_plot(file, *own, plot, into);
+      for (const PartPlot& plot : part.plots) add_plot(file, *own, plot, figures);
       if (std::string_view(part.name) == "pair_correlation")
-        add_partial_pairs(file, *own, part.plots.front(), into);
-      add_trends(file, *own, part, into);
-      for (std::size_t i = n_before; i < into.size(); ++i) into[i].section = part.name;
+        add_partial_pairs(file, *own, part.plots.front(), figures);
+      add_trends(file, *own, part, figures);
+      for (std::size_t i = n_before; i < figures.size(); ++i) figures[i].section = part.name;
     }
   }
 }

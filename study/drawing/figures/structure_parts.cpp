@@ -18,12 +18,12 @@ bool is_within(const FigureRow& row, double first, double last) {
 /// Leaves out the places below the first and above the last value that is not 0, but for one on
 /// either side.
 void trim(FigurePanel& panel) {
-  std::vector<double> zero, other;
+  std::vector<double> zero, counterpart;
   for (const FigureSeries& series : panel.series) {
-    for (const FigureRow& row : series.rows) (row.y == 0 ? zero : other).push_back(row.x);
+    for (const FigureRow& row : series.rows) (row.y == 0 ? zero : counterpart).push_back(row.x);
   }
-  if (other.empty()) return;
-  double first = std::ranges::min(other), last = std::ranges::max(other);
+  if (counterpart.empty()) return;
+  double first = std::ranges::min(counterpart), last = std::ranges::max(counterpart);
   const double lowest = first, highest = last;
   for (const double x : zero) {
     if (x < lowest && (first == lowest || x > first)) first = x;
@@ -35,16 +35,16 @@ void trim(FigurePanel& panel) {
 }
 
 /// Ends the axis above what lies beyond the peak, where the peak is much higher.
-void clip_peak(double before, FigurePanel& panel) {
-  constexpr double much = 2, room = 1.4;
+void clip_peak(double peak_end, FigurePanel& panel) {
+  constexpr double ratio = 2, room = 1.4;
   double peak = 0, rest = 0;
   for (const FigureSeries& series : panel.series) {
     for (const FigureRow& row : series.rows) {
-      double& greatest = row.x < before ? peak : rest;
+      double& greatest = row.x < peak_end ? peak : rest;
       greatest = std::max(greatest, row.y);
     }
   }
-  if (!(rest > 0) || !(peak > much * rest)) return;
+  if (!(rest > 0) || !(peak > ratio * rest)) return;
   panel.y.high = std::ceil(room * rest * 10) / 10;
   panel.caption += finite_text(" The peak at contact is clipped: it reaches {:.3g}.", peak);
 }
@@ -145,7 +145,7 @@ const std::vector<DrawnPart>& drawn_parts() {
          .y_label = "v ρ_v",
          .from_zero = true,
          .x_kind = logarithmic,
-         .over = Over::its_cube,
+         .abscissa = Over::its_cube,
          .trimmed = true}},
        {{{"n_pores"}},
         {{"nu"}},
@@ -160,7 +160,7 @@ const std::vector<DrawnPart>& drawn_parts() {
          .x_label = "radius of the random sphere (R)",
          .y_label = "P_0",
          .y_kind = logarithmic,
-         .beside = "p0_gotoh",
+         .companion = "p0_gotoh",
          .beside_name = "Gotoh, Percus-Yevick fluid"}},
        {{{"phi"}}}},
       {"holes", {}, {{{"unclassified"}}}},
@@ -188,7 +188,7 @@ const std::vector<DrawnPart>& drawn_parts() {
 std::vector<FigureRow> rows_at(const TableView& table, const PartPlot& plot,
                                const std::string& quantity, bool with_errors, std::size_t place) {
   std::vector<double> xs = table.axis(plot.x);
-  if (plot.over == Over::its_cube) {
+  if (plot.abscissa == Over::its_cube) {
     for (double& x : xs) x = x * x * x;
   }
   std::vector<FigureRow> rows =

@@ -18,8 +18,8 @@ struct PartPlot {
   bool from_zero = false;
   Drawn drawn = Drawn::line;
   AxisKind x_kind = AxisKind::linear;
-  Over over = Over::the_axis;
-  const char* beside = nullptr;  // another curve of the same table
+  Over abscissa = Over::the_axis;
+  const char* companion = nullptr;  // another curve of the same table
   const char* beside_name = "";
   std::optional<double> rule{};
   bool pooled = false;   // a ratio of sums over packings
@@ -56,6 +56,6 @@ void finish_panel(const PartPlot& plot, FigurePanel& panel);
 
 /// Adds, for each part that several sweep points have, its first curve at the last tap that they
 /// have in common and its first number against taps, one curve for each of at most eight points.
-void add_structure_of_points(const DrawnFile& file, Figures& into);
+void add_structure_of_points(const DrawnFile& file, Figures& figures);
 
 }  // namespace jostle::inline study

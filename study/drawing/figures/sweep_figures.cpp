@@ -35,24 +35,25 @@ FigurePanel loop_panel(const TableView& table) {
       .y = {axis_label(observable, table.units(observable))}};
   const std::vector<double> branch = table.values("branch");
   std::vector<double> numbers;
-  for (const double one : branch) {
-    if (std::ranges::find(numbers, one) == numbers.end()) numbers.push_back(one);
+  for (const double value : branch) {
+    if (std::ranges::find(numbers, value) == numbers.end()) numbers.push_back(value);
   }
   const double first = branch.empty() ? 0 : std::ranges::min(branch);
   for (std::size_t b = 0; b < numbers.size(); ++b) {
-    FigureSeries one{.name = "",
-                     .colour = kind_colour(b),
-                     .drawn = Drawn::joined_points,
-                     .dash = b % 3,
-                     .symbol = b};
+    FigureSeries series{.name = "",
+                        .colour = kind_colour(b),
+                        .drawn = Drawn::joined_points,
+                        .dash = b % 3,
+                        .symbol = b};
     for (const std::size_t i : steps_of(branch, b, numbers)) {
-      one.rows.push_back({.x = table.value(control, i),
-                          .y = table.value(observable, i),
-                          .error = table.half_width(observable, i)});
+      series.rows.push_back({.x = table.value(control, i),
+                             .y = table.value(observable, i),
+                             .error = table.half_width(observable, i)});
     }
-    one.name = fmt::format("branch {}, {}", numbers[b] - first + 1,
-                           one.rows.back().x > one.rows.front().x ? "upwards" : "downwards");
-    panel.series.push_back(std::move(one));
+    series.name =
+        fmt::format("branch {}, {}", numbers[b] - first + 1,
+                    series.rows.back().x > series.rows.front().x ? "upwards" : "downwards");
+    panel.series.push_back(std::move(series));
   }
   return panel;
 }
@@ -65,29 +66,29 @@ bool is_sweep(const TableView& table) {
 void mark_extremum(const TableView& table, const std::string& name, const char* place,
                    FigurePanel& panel) {
   if (!table.has(name + "_p") || !(table.value(name + "_p") < SweepExtremum::level)) return;
-  const double at = table.value(name + "_at");
+  const double location = table.value(name + "_at");
   panel.caption += finite_text(
       " The {} point of a parabola is at {:.3g}; dashed: it and the 95 % interval of the {}'s "
       "place.",
-      place, at, name);
-  for (const double x : {at, table.value(name + "_at_low"), table.value(name + "_at_high")}) {
+      place, location, name);
+  for (const double x : {location, table.value(name + "_at_low"), table.value(name + "_at_high")}) {
     if (std::isfinite(x)) panel.rules.push_back({.x = x});
   }
 }
 
 }  // namespace
 
-void add_hysteresis(const DrawnFile& file, Figures& into) {
+void add_hysteresis(const DrawnFile& file, Figures& figures) {
   const std::vector<TableView> made = file.made_of("analysis", "hysteresis");
   for (const std::uint32_t point : points_of(file, made)) {
     for (const TableView& table : made) {
       if (table.point() != point || table.axis("step").empty()) continue;
-      add_panel(file, point, loop_panel(table), into, table.name());
+      add_panel(file, point, loop_panel(table), figures, table.name());
     }
   }
 }
 
-void add_sweeps(const DrawnFile& file, Figures& into) {
+void add_sweeps(const DrawnFile& file, Figures& figures) {
   for (const TableView& table : file.tables()) {
     if (!is_sweep(table)) continue;
     const std::string x = table.note("against"), y = table.note("observable");
@@ -104,7 +105,7 @@ void add_sweeps(const DrawnFile& file, Figures& into) {
                     .rows = rows_of(table.axis(x), table.values(y), table.half_widths(y))}}};
     mark_extremum(table, "maximum", "highest", panel);
     mark_extremum(table, "minimum", "lowest", panel);
-    add_panel(file, std::nullopt, std::move(panel), into, table.name());
+    add_panel(file, std::nullopt, std::move(panel), figures, table.name());
   }
 }
 

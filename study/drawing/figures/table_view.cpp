@@ -55,12 +55,12 @@ std::string TableView::observable() const {
 }
 
 const Quantity* TableView::found(const std::string& quantity) const {
-  const auto at = std::ranges::find(drawn_->table.quantities, quantity, &Quantity::name);
-  return at == drawn_->table.quantities.end() ? nullptr : &*at;
+  const auto found = std::ranges::find(drawn_->table.quantities, quantity, &Quantity::name);
+  return found == drawn_->table.quantities.end() ? nullptr : &*found;
 }
 const Quantity* TableView::found_axis(const std::string& name) const {
-  const auto at = std::ranges::find(drawn_->table.axes, name, &Quantity::name);
-  return at == drawn_->table.axes.end() ? nullptr : &*at;
+  const auto found = std::ranges::find(drawn_->table.axes, name, &Quantity::name);
+  return found == drawn_->table.axes.end() ? nullptr : &*found;
 }
 const Quantity* TableView::either(const std::string& name) const {
   const Quantity* const quantity = found(name);
@@ -69,7 +69,7 @@ const Quantity* TableView::either(const std::string& name) const {
 
 std::vector<std::string> TableView::quantities() const {
   std::vector<std::string> names;
-  for (const Quantity& one : drawn_->table.quantities) names.push_back(one.name);
+  for (const Quantity& quantity : drawn_->table.quantities) names.push_back(quantity.name);
   return names;
 }
 
@@ -122,10 +122,10 @@ std::vector<double> TableView::half_width_row(const std::string& quantity, std::
   return row_of(found(quantity), half_widths(quantity), i);
 }
 
-std::vector<double> TableView::row_of(const Quantity* one, std::vector<double> all,
+std::vector<double> TableView::row_of(const Quantity* quantity, std::vector<double> all,
                                       std::size_t i) const {
-  if (one == nullptr || one->axes.size() < 2) return all;
-  const Quantity* const last = found_axis(one->axes.back());
+  if (quantity == nullptr || quantity->axes.size() < 2) return all;
+  const Quantity* const last = found_axis(quantity->axes.back());
   const std::size_t length =
       last == nullptr ? 0
                       : std::visit([](const auto& values) { return values.size(); }, last->values);
@@ -135,16 +135,16 @@ std::vector<double> TableView::row_of(const Quantity* one, std::vector<double> a
 }
 
 std::string TableView::units(const std::string& name) const {
-  const Quantity* const one = either(name);
-  return one == nullptr ? "1" : one->units;
+  const Quantity* const quantity = either(name);
+  return quantity == nullptr ? "1" : quantity->units;
 }
 std::string TableView::long_name(const std::string& name) const {
-  const Quantity* const one = either(name);
-  return one == nullptr ? "" : one->long_name;
+  const Quantity* const quantity = either(name);
+  return quantity == nullptr ? "" : quantity->long_name;
 }
 std::string TableView::source(const std::string& quantity) const {
-  const Quantity* const one = found(quantity);
-  return one == nullptr || one->source == "jostle" ? "" : one->source;
+  const Quantity* const values = found(quantity);
+  return values == nullptr || values->source == "jostle" ? "" : values->source;
 }
 
 std::string TableView::note(const std::string& key) const {

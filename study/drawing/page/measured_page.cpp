@@ -78,7 +78,7 @@ std::string law_html(const Fit& fit, const CurveUnits& units) {
 }  // namespace
 
 std::string measured_page(const FittedCurve& fitted, std::span<const PageFigure> figures,
-                          const Provenance& by) {
+                          const Provenance& provenance) {
   std::vector<Fit> fits;
   std::vector<std::string> refusals;
   for (const FitOutcome& outcome : fitted.outcomes) {
@@ -98,8 +98,9 @@ std::string measured_page(const FittedCurve& fitted, std::span<const PageFigure>
       "<p class=\"small\">a(b): b, in the last digits of a, is half the 68 % interval; -: that "
       "interval is open. ";
   return text +
-         html_text(fmt::format("Made {} by jostle {} ({}): {}", by.started, by.version,
-                               by.git_revision, by.command_line)) +
+         html_text(fmt::format("Made {} by jostle {} ({}): {}", provenance.started,
+                               provenance.version, provenance.git_revision,
+                               provenance.command_line)) +
          "</p>\n</body></html>\n";
 }
 

@@ -16,6 +16,6 @@ struct PageFigure {
 /// parameters of each law with their 95 % intervals, and remarks. It needs no network and no other
 /// file, and runs nothing.
 std::string measured_page(const FittedCurve& fitted, std::span<const PageFigure> figures,
-                          const Provenance& by);
+                          const Provenance& provenance);
 
 }  // namespace jostle::inline study

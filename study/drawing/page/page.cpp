@@ -17,18 +17,19 @@ std::string filled_template(const std::string& title, const std::string& data) {
   const auto cut = [&](const char* mark) { return page.find(mark); };
   constexpr std::string_view title_mark = "@TITLE@", data_mark = "@DATA@";
   const std::size_t at_title = cut(title_mark.data()), at_data = cut(data_mark.data());
-  std::string out = page.substr(0, at_title);
-  out += title;
-  out += std::string_view(page).substr(at_title + title_mark.size(),
-                                       at_data - at_title - title_mark.size());
-  out += data;
-  out += std::string_view(page).substr(at_data + data_mark.size());
-  return out;
+  std::string html = page.substr(0, at_title);
+  html += title;
+  html += std::string_view(page).substr(at_title + title_mark.size(),
+                                        at_data - at_title - title_mark.size());
+  html += data;
+  html += std::string_view(page).substr(at_data + data_mark.size());
+  return html;
 }
 
 }  // namespace
 
-std::string report_page(std::span<const PageSource> sources, const Provenance& by, int threads) {
+std::string report_page(std::span<const PageSource> sources, const Provenance& provenance,
+                        int threads) {
   const std::size_t n = std::max<std::size_t>(1, sources.size());
   const PageRoom room{DrawnRoom::of_one_in(n), packing_bytes / n};
   Json files = Json::array();
@@ -39,10 +40,10 @@ std::string report_page(std::span<const PageSource> sources, const Provenance& b
   }
   const Json data{{"format", 1},
                   {"made",
-                   {{"version", page_text(by.version)},
-                    {"git_revision", page_text(by.git_revision)},
-                    {"command_line", page_text(by.command_line)},
-                    {"started", page_text(by.started)}}},
+                   {{"version", page_text(provenance.version)},
+                    {"git_revision", page_text(provenance.git_revision)},
+                    {"command_line", page_text(provenance.command_line)},
+                    {"started", page_text(provenance.started)}}},
                   {"files", files}};
   return filled_template(html_text(page_text(title, 200).text()), script_text(data));
 }

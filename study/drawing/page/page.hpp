@@ -15,7 +15,8 @@ struct PageSource {
 
 /// One HTML page that shows the files: it needs no network and no other file, and runs no code from
 /// them. It is smaller than about 10 MB for any file: large data are thinned, and the page reports
-/// it. `by` made the page. Throws ResultsError.
-std::string report_page(std::span<const PageSource> sources, const Provenance& by, int threads);
+/// it. `provenance` made the page. Throws ResultsError.
+std::string report_page(std::span<const PageSource> sources, const Provenance& provenance,
+                        int threads);
 
 }  // namespace jostle::inline study

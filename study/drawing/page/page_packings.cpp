@@ -33,29 +33,29 @@ constexpr std::size_t most_shown_points = 100, most_realizations = 20;
 /// Realizations of a sweep point that keep positions.
 struct KeptPoint {
   std::uint32_t n_spheres = 0;
-  std::size_t of = 0;  // realizations that there are
+  std::size_t n_available = 0;  // realizations that there are
   std::vector<KeptRealization> realizations;
 };
 
 KeptPoint kept_of(const ResultsFile& file, std::uint32_t point) {
   KeptPoint kept;
-  const std::vector<std::uint32_t> there = realizations_with_taps(file, point);
-  kept.of = there.size();
-  for (const std::uint32_t r : spread(there, most_realizations)) {
-    KeptRealization one{{point, r}, {}};
-    for (const SnapshotOutline& outline : file.realization(one.id)->snapshots()) {
+  const std::vector<std::uint32_t> available = realizations_with_taps(file, point);
+  kept.n_available = available.size();
+  for (const std::uint32_t r : spread(available, most_realizations)) {
+    KeptRealization realization{{point, r}, {}};
+    for (const SnapshotOutline& outline : file.realization(realization.id)->snapshots()) {
       if (outline.n_spheres[kept_positions] == 0) continue;
-      one.taps.push_back(outline.tap);
+      realization.taps.push_back(outline.tap);
       kept.n_spheres = std::max(kept.n_spheres, outline.n_spheres[kept_positions]);
     }
-    if (!one.taps.empty()) kept.realizations.push_back(std::move(one));
+    if (!realization.taps.empty()) kept.realizations.push_back(std::move(realization));
   }
   return kept;
 }
 
 struct ChosenPackings {
   std::vector<std::pair<RealizationId, std::uint64_t>> packings;
-  std::size_t of = 0;
+  std::size_t n_available = 0;
 };
 
 /// At most so many of the packings of these points: points first, then taps, then realizations.
@@ -64,20 +64,20 @@ ChosenPackings choose(std::vector<KeptPoint> points, std::size_t most) {
   std::size_t most_taps = 0, realizations_of_a_point = 0;
   for (const KeptPoint& point : points) {
     realizations_of_a_point = std::max(realizations_of_a_point, point.realizations.size());
-    for (const KeptRealization& one : point.realizations) {
-      chosen.of += one.taps.size();
-      most_taps = std::max(most_taps, one.taps.size());
+    for (const KeptRealization& realization : point.realizations) {
+      chosen.n_available += realization.taps.size();
+      most_taps = std::max(most_taps, realization.taps.size());
     }
   }
-  if (most == 0 || chosen.of == 0) return chosen;
+  if (most == 0 || chosen.n_available == 0) return chosen;
   points = spread(points, std::max<std::size_t>(1, most / std::min<std::size_t>(2, most_taps)));
   const std::size_t taps = std::clamp<std::size_t>(most / points.size(), 1, most_taps);
   const std::size_t realizations =
       std::clamp<std::size_t>(most / (points.size() * taps), 1, realizations_of_a_point);
   for (const KeptPoint& point : points) {
-    for (const KeptRealization& one : spread(point.realizations, realizations)) {
-      for (const std::uint64_t tap : spread(one.taps, taps))
-        chosen.packings.push_back({one.id, tap});
+    for (const KeptRealization& realization : spread(point.realizations, realizations)) {
+      for (const std::uint64_t tap : spread(realization.taps, taps))
+        chosen.packings.push_back({realization.id, tap});
     }
   }
   return chosen;
@@ -221,7 +221,7 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
     KeptPoint kept = kept_of(file, static_cast<std::uint32_t>(point));
     if (kept.realizations.empty()) continue;
     largest = std::max(largest, kept.n_spheres);
-    most_there = std::max(most_there, kept.of);
+    most_there = std::max(most_there, kept.n_available);
     points.push_back(std::move(kept));
   }
   if (points.empty()) return Json::array();
@@ -232,11 +232,11 @@ Json page_packings(const ResultsFile& file, std::size_t room, int threads,
   if (most == 0) {
     left_out.push_back(fmt::format(
         "no packing is drawn: one of {} spheres alone takes more room than a page has", largest));
-  } else if (chosen.packings.size() < chosen.of) {
+  } else if (chosen.packings.size() < chosen.n_available) {
     left_out.push_back(
         fmt::format("{} of {} kept packings are drawn: evenly spread over sweep "
                     "points, taps and realizations",
-                    chosen.packings.size(), chosen.of));
+                    chosen.packings.size(), chosen.n_available));
   }
   if (n_points > most_shown_points || most_there > most_realizations) {
     left_out.push_back(

@@ -28,13 +28,13 @@ struct Tally {
   std::uint64_t done = 0, unfinished = 0, failed = 0, missing = 0, taps = 0;
   Work work;
 
-  void add(const RealizationSummary& one) {
-    work += one.work;
-    taps += one.taps();
-    ++(one.status == RealizationStatus::done      ? done
-       : one.status == RealizationStatus::failed  ? failed
-       : one.status == RealizationStatus::running ? unfinished
-                                                  : missing);
+  void add(const RealizationSummary& realization) {
+    work += realization.work;
+    taps += realization.taps();
+    ++(realization.status == RealizationStatus::done      ? done
+       : realization.status == RealizationStatus::failed  ? failed
+       : realization.status == RealizationStatus::running ? unfinished
+                                                          : missing);
   }
   Json json() const {
     return {{"done", done},
@@ -47,16 +47,16 @@ struct Tally {
   }
 };
 
-Json page_provenance(const Provenance& by) {
-  return {{"version", page_text(by.version)},
-          {"git_revision", page_text(by.git_revision)},
-          {"libraries", page_text(by.libraries)},
-          {"host", page_text(by.host)},
-          {"cpu", page_text(by.cpu)},
-          {"instruction_set", page_text(by.instruction_set)},
-          {"threads", page_text(by.threads)},
-          {"command_line", page_text(by.command_line)},
-          {"started", page_text(by.started)}};
+Json page_provenance(const Provenance& provenance) {
+  return {{"version", page_text(provenance.version)},
+          {"git_revision", page_text(provenance.git_revision)},
+          {"libraries", page_text(provenance.libraries)},
+          {"host", page_text(provenance.host)},
+          {"cpu", page_text(provenance.cpu)},
+          {"instruction_set", page_text(provenance.instruction_set)},
+          {"threads", page_text(provenance.threads)},
+          {"command_line", page_text(provenance.command_line)},
+          {"started", page_text(provenance.started)}};
 }
 
 Json page_points(const Study& study, const DrawnFile& drawn, const std::vector<Tally>& tallies) {
@@ -102,17 +102,17 @@ Json page_run(const ResultsFile& file, const DrawnFile& drawn, const std::string
   std::vector<Tally> tallies(study.points.size());
   Tally all;
   Json failures = Json::array(), processes = Json::array();
-  for (const RealizationSummary& one : file.realizations()) {
-    tallies[one.id.point].add(one);
-    all.add(one);
-    if (one.status != RealizationStatus::failed || failures.size() >= most_listed) continue;
-    failures.push_back({{"point", one.id.point},
-                        {"realization", one.id.realization},
-                        {"seed", fmt::to_string(study.points[one.id.point].seed)},
-                        {"reason", page_text(one.reason)}});
+  for (const RealizationSummary& realization : file.realizations()) {
+    tallies[realization.id.point].add(realization);
+    all.add(realization);
+    if (realization.status != RealizationStatus::failed || failures.size() >= most_listed) continue;
+    failures.push_back({{"point", realization.id.point},
+                        {"realization", realization.id.realization},
+                        {"seed", fmt::to_string(study.points[realization.id.point].seed)},
+                        {"reason", page_text(realization.reason)}});
   }
-  for (const Provenance& by : file.provenance()) {
-    if (processes.size() < most_listed) processes.push_back(page_provenance(by));
+  for (const Provenance& provenance : file.provenance()) {
+    if (processes.size() < most_listed) processes.push_back(page_provenance(provenance));
   }
   if (study.points.size() > most_named_points) {
     left_out.push_back(

@@ -80,7 +80,7 @@ bool assigns(const std::string& formula) {
 
 std::vector<std::string> functions_of_laws() {
   std::vector<std::string> names;
-  for (const NamedFunction& one : functions) names.emplace_back(one.name);
+  for (const NamedFunction& function : functions) names.emplace_back(function.name);
   return names;
 }
 
@@ -97,8 +97,8 @@ std::vector<FormulaName> names_in(const std::string& formula) {
     const std::size_t next = formula.find_first_not_of(' ', i);
     FormulaName name{formula.substr(begin, i - begin),
                      next != std::string::npos && formula[next] == '('};
-    const bool known = std::ranges::any_of(names, [&](const FormulaName& other) {
-      return other.text == name.text && other.is_function == name.is_function;
+    const bool known = std::ranges::any_of(names, [&](const FormulaName& known_name) {
+      return known_name.text == name.text && known_name.is_function == name.is_function;
     });
     if (!known) names.push_back(std::move(name));
   }
@@ -121,7 +121,8 @@ LawFormula::LawFormula(const std::string& formula, const std::vector<std::string
   try {
     parser.ClearFun();
     parser.ClearConst();
-    for (const NamedFunction& one : functions) parser.DefineFun(one.name, one.function);
+    for (const NamedFunction& function : functions)
+      parser.DefineFun(function.name, function.function);
     parser.DefineConst("pi", std::numbers::pi);
     parser.DefineVar("t", &parser_->t);
     for (std::size_t j = 0; j < parameters.size(); ++j) {

@@ -37,27 +37,27 @@ std::vector<Probe> probes(const ParameterValues& start, const std::vector<Parame
 
 // True if f(a + b) - f(a) - f(b) + f is nothing but rounding, for a step along each of two
 // parameters, or twice along one.
-bool no_second_difference(const LawValue& law, const Probe& at, std::size_t j, std::size_t k) {
+bool no_second_difference(const LawValue& law, const Probe& probe, std::size_t j, std::size_t k) {
   const auto value = [&](double along_j, double along_k) {
-    ParameterValues p = at.p;
-    p[j] += along_j * (1 + std::abs(at.p[j]));
-    p[k] += along_k * (1.3 + std::abs(at.p[k]));
-    return law(at.t, p.data());
+    ParameterValues p = probe.p;
+    p[j] += along_j * (1 + std::abs(probe.p[j]));
+    p[k] += along_k * (1.3 + std::abs(probe.p[k]));
+    return law(probe.t, p.data());
   };
-  const double none = value(0, 0), first = value(1, 0), second = value(0, 1), both = value(1, 1);
-  const double size = std::abs(none) + std::abs(first) + std::abs(second) + std::abs(both);
-  return std::abs(both - first - second + none) <= rounding * size;
+  const double none = value(0, 0), first = value(1, 0), second = value(0, 1), joint = value(1, 1);
+  const double size = std::abs(none) + std::abs(first) + std::abs(second) + std::abs(joint);
+  return std::abs(joint - first - second + none) <= rounding * size;
 }
 
-void find_linear(const LawValue& law, const std::vector<Probe>& where,
+void find_linear(const LawValue& law, const std::vector<Probe>& probes,
                  std::vector<Parameter>& parameters) {
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     if (std::isfinite(parameters[j].lower) || std::isfinite(parameters[j].upper)) continue;
-    parameters[j].linear = std::ranges::all_of(where, [&](const Probe& at) {
-      if (!std::isfinite(law(at.t, at.p.data()))) return true;  // no information
+    parameters[j].linear = std::ranges::all_of(probes, [&](const Probe& probe) {
+      if (!std::isfinite(law(probe.t, probe.p.data()))) return true;  // no information
       for (std::size_t k = 0; k <= j; ++k) {
-        const bool together = k == j || parameters[k].linear;
-        if (together && !no_second_difference(law, at, j, k)) return false;
+        const bool is_joint = k == j || parameters[k].linear;
+        if (is_joint && !no_second_difference(law, probe, j, k)) return false;
       }
       return true;
     });
@@ -75,20 +75,21 @@ struct Slopes {
   Eigen::MatrixXd by_parameter;  // [n, n_parameters]
   Eigen::VectorXd by_t, value;   // [n]
 };
-std::optional<Slopes> slopes(const LawValue& law, const std::vector<Probe>& where) {
-  const auto n = static_cast<Eigen::Index>(where.front().p.size());
+std::optional<Slopes> slopes(const LawValue& law, const std::vector<Probe>& probes) {
+  const auto n = static_cast<Eigen::Index>(probes.front().p.size());
   std::vector<Eigen::VectorXd> rows;
-  for (const Probe& at : where) {
+  for (const Probe& probe : probes) {
     Eigen::VectorXd row(n + 2);
     for (Eigen::Index j = 0; j < n; ++j) {
       row[j] = logarithmic_slope([&](double factor) {
-        ParameterValues p = at.p;
+        ParameterValues p = probe.p;
         p[static_cast<std::size_t>(j)] *= factor;
-        return law(at.t, p.data());
+        return law(probe.t, p.data());
       });
     }
-    row[n] = logarithmic_slope([&](double factor) { return law(at.t * factor, at.p.data()); });
-    row[n + 1] = law(at.t, at.p.data());
+    row[n] =
+        logarithmic_slope([&](double factor) { return law(probe.t * factor, probe.p.data()); });
+    row[n + 1] = law(probe.t, probe.p.data());
     const double size = row.cwiseAbs().maxCoeff();
     const bool even = size <= steepest * std::abs(row[n + 1]);
     if (std::isfinite(size) && size > 1e-200 && even) rows.emplace_back(row / size);
@@ -130,10 +131,10 @@ ParameterUnit unit_of(int of_value, int of_time) {
 
 void find_traits(const LawValue& law, const ParameterValues& start,
                  std::vector<Parameter>& parameters) {
-  const std::vector<Probe> where = probes(start, parameters);
-  const std::optional<Slopes> found = slopes(law, where);
+  const std::vector<Probe> places = probes(start, parameters);
+  const std::optional<Slopes> found = slopes(law, places);
   if (!found) return;
-  find_linear(law, where, parameters);
+  find_linear(law, places, parameters);
   // f(t; u^v p) = u f and f(u t; u^w p) = f for every u: their derivatives by u at u = 1.
   const auto of_value = powers(found->by_parameter, found->value);
   const auto of_time = powers(found->by_parameter, -found->by_t);

@@ -150,11 +150,11 @@ FormulaModel::FormulaModel(const OwnLaw& law) : law_(law) {
 // A formula is evaluated in memory of its own, and fits of one model run on many threads: each
 // keeps a parser of the law that it was last at.
 LawFormula& FormulaModel::evaluator() const {
-  thread_local std::shared_ptr<const int> of;
+  thread_local std::shared_ptr<const int> owner;
   thread_local std::optional<LawFormula> kept;
-  if (of != identity_) {
+  if (owner != identity_) {
     kept.emplace(law_.formula, names_of(law_));
-    of = identity_;
+    owner = identity_;
   }
   return *kept;
 }
@@ -173,11 +173,11 @@ double FormulaModel::value_and_gradient(double t, const double* p, double* gradi
   ParameterValues moved(p, p + parameters_.size());
   for (std::size_t j = 0; j < moved.size(); ++j) {
     const double h = difference_step(j, p[j]);
-    const auto at = [&](double steps) {
+    const auto value_at = [&](double steps) {
       moved[j] = p[j] + steps * h;
       return law(t, moved.data());
     };
-    gradient[j] = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
+    gradient[j] = (8 * (value_at(1) - value_at(-1)) - (value_at(2) - value_at(-2))) / (12 * h);
     moved[j] = p[j];
   }
   return law(t, p);

@@ -79,19 +79,19 @@ std::string column_text(const ColumnRoles& roles, std::size_t column) {
 }
 
 std::size_t only_column(const std::string& path, const std::vector<std::string>& names,
-                        const std::vector<std::size_t>& columns, const char* what) {
+                        const std::vector<std::size_t>& columns, const char* role) {
   if (columns.size() == 1) return columns.front();
-  if (columns.empty()) refuse(path, names, fmt::format("no column is named as {}", what));
+  if (columns.empty()) refuse(path, names, fmt::format("no column is named as {}", role));
   std::vector<std::string> several;
   for (const std::size_t column : columns) several.push_back(names[column]);
   refuse(path, names,
-         fmt::format("{} columns are named as {} ({})", columns.size(), what,
+         fmt::format("{} columns are named as {} ({})", columns.size(), role,
                      printable(joined(several, ", "), 100)));
 }
 
 /// Columns of the heading by their names.
 struct NamedColumns {
-  std::vector<std::size_t> t, x, sigma, laws, others;
+  std::vector<std::size_t> t, x, sigma, laws, unused;
 };
 
 NamedColumns named_columns(ColumnRoles& roles) {
@@ -109,7 +109,7 @@ NamedColumns named_columns(ColumnRoles& roles) {
     } else if (is_law(name)) {
       found.laws.push_back(c);
     } else {
-      found.others.push_back(c);
+      found.unused.push_back(c);
     }
   }
   return found;
@@ -123,9 +123,9 @@ void note_laws(const NamedColumns& found, ColumnRoles& roles) {
 
 void take_errors(const std::string& path, const NamedColumns& found, ColumnRoles& roles) {
   const auto& names = roles.names;
-  if (!found.others.empty()) {
+  if (!found.unused.empty()) {
     std::vector<std::string> unknown;
-    for (const std::size_t column : found.others) unknown.push_back(names[column]);
+    for (const std::size_t column : found.unused) unknown.push_back(names[column]);
     refuse(path, names,
            fmt::format("the meaning of the column{} {} is not known",
                        unknown.size() == 1 ? "" : "s", list_of_names(unknown)));
@@ -137,7 +137,7 @@ void take_errors(const std::string& path, const NamedColumns& found, ColumnRoles
 
 void take_realizations(const std::string& path, const NamedColumns& found, ColumnRoles& roles) {
   const auto& names = roles.names;
-  std::vector<std::size_t> columns = found.others;
+  std::vector<std::size_t> columns = found.unused;
   note_laws(found, roles);
   // A heading t, X, X, ... names every realization X.
   const bool all_x = columns.empty() && found.sigma.empty() && found.x.size() >= 2;

@@ -118,7 +118,7 @@ std::optional<DerivedValue> parameter(const Table& table, const std::string& nam
 void set_steadiness(const Table& table, DerivedValue& value) {
   const auto note = [&](const char* key) {
     const auto found =
-        std::ranges::find(table.notes, key, [](const auto& one) { return one.first; });
+        std::ranges::find(table.notes, key, [](const auto& entry) { return entry.first; });
     return found == table.notes.end() ? "" : found->second;
   };
   value.taps = note("taps");

@@ -64,9 +64,9 @@ Table with_half_widths(Table table) {
     }
     quantity.name = stem + half_width_suffix;
     const std::string standard = "standard error";
-    const bool more = !named(table, stem) && quantity.long_name.starts_with(standard);
+    const bool has_error = !named(table, stem) && quantity.long_name.starts_with(standard);
     quantity.long_name =
-        "half the 68 % interval" + (more ? quantity.long_name.substr(standard.size()) : "");
+        "half the 68 % interval" + (has_error ? quantity.long_name.substr(standard.size()) : "");
     used.push_back(dof->name);
   }
   std::erase_if(table.quantities, [&](const Quantity& quantity) {

@@ -18,23 +18,23 @@ std::string of_chosen_points(const ResultsFile& file, std::span<const std::uint3
 
 SharedTaps shared_taps(std::span<const ReachedTaps> points) {
   std::map<std::uint64_t, std::uint64_t> farthest, shared;  // rows, by the planned taps
-  for (const ReachedTaps& one : points)
-    farthest[one.planned] = std::max(farthest[one.planned], one.rows);
+  for (const ReachedTaps& point : points)
+    farthest[point.planned] = std::max(farthest[point.planned], point.rows);
   const auto last = [](std::uint64_t rows) { return rows - 1; };
   SharedTaps found;
-  for (const ReachedTaps& one : points) {
-    const std::uint64_t most = farthest.at(one.planned);
+  for (const ReachedTaps& point : points) {
+    const std::uint64_t most = farthest.at(point.planned);
     std::string reason;
-    if (one.rows == 0) {
+    if (point.rows == 0) {
       reason = "no realization has taps";
-    } else if (2 * last(one.rows) < last(most)) {
+    } else if (2 * last(point.rows) < last(most)) {
       reason = fmt::format(
           "its realizations have all reached tap {}, fewer than half of the {} taps that those of "
           "another point reached",
-          last(one.rows), last(most));
+          last(point.rows), last(most));
     } else {
-      const auto [at, first] = shared.try_emplace(one.planned, one.rows);
-      if (!first) at->second = std::min(at->second, one.rows);
+      const auto [place, first] = shared.try_emplace(point.planned, point.rows);
+      if (!first) place->second = std::min(place->second, point.rows);
     }
     found.reasons.push_back(std::move(reason));
   }

@@ -32,7 +32,7 @@ std::optional<Json> PointScenes::value_at(std::uint32_t point, const std::string
   for (const auto& [swept, value] : points_.at(point).values) {
     if (swept == pointer) return value;
   }
-  const Json scene = resolved(at(point));
+  const Json scene = resolved(point_scene(point));
   const Json* const value = scene.find_pointer(pointer);
   return value != nullptr ? std::optional(*value) : std::nullopt;
 }

@@ -19,7 +19,7 @@ class PointScenes {
   /// With its sweep.
   const Scene& scene() const { return *read_.scene; }
   /// Without a sweep.
-  const Scene& at(std::uint32_t point) const { return read_.points.at(point); }
+  const Scene& point_scene(std::uint32_t point) const { return read_.points.at(point); }
   /// The value that a JSON pointer leads to in the scene of a point; nothing where it leads
   /// nowhere.
   std::optional<Json> value_at(std::uint32_t point, const std::string& pointer) const;

@@ -76,8 +76,9 @@ Physics physics_of(const StudyPoint& studied, const Json& scene, Streams streams
 
 std::vector<std::uint32_t> begun(const ResultsFile& file, std::uint32_t point) {
   std::vector<std::uint32_t> numbers;
-  for (const RealizationSummary& one : file.realizations())
-    if (one.id.point == point && one.rows > 0) numbers.push_back(one.id.realization);
+  for (const RealizationSummary& realization : file.realizations())
+    if (realization.id.point == point && realization.rows > 0)
+      numbers.push_back(realization.id.realization);
   std::ranges::sort(numbers);
   return numbers;
 }
@@ -85,18 +86,19 @@ std::vector<std::uint32_t> begun(const ResultsFile& file, std::uint32_t point) {
 [[noreturn]] void refuse(std::span<const ResultsFile* const> files, const Ensemble& a,
                          const Ensemble& b) {
   const auto first = begun(*files[a.file], a.point), second = begun(*files[b.file], b.point);
-  std::vector<std::uint32_t> both;
-  std::ranges::set_intersection(first, second, std::back_inserter(both));
-  const std::string where =
+  std::vector<std::uint32_t> shared;
+  std::ranges::set_intersection(first, second, std::back_inserter(shared));
+  const std::string place_text =
       fmt::format("{}, sweep point {}, and {}, sweep point {}", files[a.file]->path(), a.point,
                   files[b.file]->path(), b.point);
-  if (both.empty())
-    throw BadInput(fmt::format(
-        "{}, hold realizations of one ensemble: join the files with jostle merge first", where));
+  if (shared.empty())
+    throw BadInput(
+        fmt::format("{}, hold realizations of one ensemble: join the files with jostle merge first",
+                    place_text));
   throw BadInput(fmt::format(
       "{}, hold the same {} realizations (one scene, one seed), which count once: leave "
       "one of the files out, or run one of them with another seed",
-      where, both.size()));
+      place_text, shared.size()));
 }
 
 }  // namespace
@@ -107,13 +109,14 @@ void require_different_ensembles(std::span<const ResultsFile* const> files) {
     const Study& study = files[k]->study();
     const PointScenes scenes(*files[k]);
     for (std::uint32_t point = 0; point < study.points.size(); ++point) {
-      const Json scene = resolved(scenes.at(point));
+      const Json scene = resolved(scenes.point_scene(point));
       Ensemble ensemble{k, point, tap_lines(scene.at("protocol"))};
-      auto& others = seen[physics_of(study.points[point], scene, scenes.at(point).streams)];
-      for (const Ensemble& other : others)
-        if (other.file != k && same_as_far_as_both_go(other.taps, ensemble.taps))
-          refuse(files, other, ensemble);
-      others.push_back(std::move(ensemble));
+      auto& ensembles =
+          seen[physics_of(study.points[point], scene, scenes.point_scene(point).streams)];
+      for (const Ensemble& earlier : ensembles)
+        if (earlier.file != k && same_as_far_as_both_go(earlier.taps, ensemble.taps))
+          refuse(files, earlier, ensemble);
+      ensembles.push_back(std::move(ensemble));
     }
   }
 }

@@ -34,7 +34,7 @@ struct Member {
   ReachedTaps reached;
   double x = not_a_number;
   SweptValue swept;
-  std::string others;  // values of the sweep that do not vary with x
+  std::string fixed_values;  // values of the sweep that do not vary with x
   std::vector<double>
       realizations;  // realizations with the value, by number; empty for other quantities
   double y = not_a_number;
@@ -49,9 +49,9 @@ struct Member {
 
 /// "/protocol/0/tap/dilate" -> 0.
 std::optional<std::size_t> tap_line(std::string_view pointer) {
-  constexpr std::string_view before = "/protocol/";
-  if (!pointer.starts_with(before)) return std::nullopt;
-  pointer.remove_prefix(before.size());
+  constexpr std::string_view prefix = "/protocol/";
+  if (!pointer.starts_with(prefix)) return std::nullopt;
+  pointer.remove_prefix(prefix.size());
   std::size_t line = 0;
   const char* const last = pointer.data() + pointer.size();
   const auto [end, error] = std::from_chars(pointer.data(), last, line);
@@ -95,12 +95,12 @@ void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, s
   }
   for (const auto& [pointer, value] : swept.sweep_values) {
     if (pointer == against || scenes.vary_together(pointer, against)) continue;
-    member.others.append(member.others.empty() ? "" : ", ")
+    member.fixed_values.append(member.fixed_values.empty() ? "" : ", ")
         .append(pointer)
         .append(" = ")
         .append(value);
   }
-  const Scene& scene = scenes.at(point);
+  const Scene& scene = scenes.point_scene(point);
   const auto line = tap_line(against);
   if (line && *line < scene.protocol.size() && !scene.protocol[*line].ramp) {
     const Control strength = control(scene.protocol[*line].tap);
@@ -188,9 +188,9 @@ std::size_t point_at(const SweepCurve& curve, double x, const std::string& axis)
   std::vector<std::string> places;
   for (std::size_t i = 0; i < curve.n_points(); ++i) {
     const double place = curve.x()[i];
-    const double off = std::abs(place - x);
-    const bool as_listed = off <= 5e-6 * std::abs(place);  // to the digits below
-    if (as_listed && (!nearest || off < std::abs(curve.x()[*nearest] - x))) nearest = i;
+    const double deviation = std::abs(place - x);
+    const bool as_listed = deviation <= 5e-6 * std::abs(place);  // to the digits below
+    if (as_listed && (!nearest || deviation < std::abs(curve.x()[*nearest] - x))) nearest = i;
     if (in_table(place) == in_table(x)) alike.push_back(i);
     places.push_back(finite_text("{:.6g}", place));
   }
@@ -218,7 +218,8 @@ std::vector<std::string> places_of(std::span<const Member> members,
 /// Means of beds that still move are kinetic: they depend on the number of taps, and so do results
 /// of the curve. The verdicts on a maximum and a minimum report it.
 void add_steadiness(std::span<const Member> members, Table& table) {
-  if (std::ranges::all_of(members, [](const Member& one) { return one.taps.empty(); })) return;
+  if (std::ranges::all_of(members, [](const Member& member) { return member.taps.empty(); }))
+    return;
   const auto moving = places_of(members, Verdict::not_reached);
   std::vector<std::string> open = places_of(members, Verdict::cannot_decide);
   const auto too_few = places_of(members, std::nullopt);
@@ -312,8 +313,8 @@ class SweptFile {
   }
 
  private:
-  static void append(std::vector<Table>& tables, const std::vector<Table>& more) {
-    tables.insert(tables.end(), more.begin(), more.end());
+  static void append(std::vector<Table>& tables, const std::vector<Table>& added) {
+    tables.insert(tables.end(), added.begin(), added.end());
   }
 
   const ResultsFile& file_;
@@ -343,11 +344,12 @@ std::vector<Member> members_of(std::span<SweptFile> files,
       } else if (settings.quantity != "value") {
         set(member, derived_value(swept.tables(), point, observable, settings.quantity));
       }
-      member.stream = {studied.seed, scenes.at(point).streams == Streams::matched ? 0 : studied.id};
+      member.stream = {studied.seed,
+                       scenes.point_scene(point).streams == Streams::matched ? 0 : studied.id};
       members.push_back(std::move(member));
     }
   }
-  if (std::ranges::all_of(members, [](const Member& one) { return one.reached.rows == 0; }))
+  if (std::ranges::all_of(members, [](const Member& member) { return member.reached.rows == 0; }))
     throw BadInput("no realization has taps, at any sweep point");
   return members;
 }
@@ -364,7 +366,7 @@ SweptPlace swept_place(const StudyPoint& swept, const PointScenes& scenes, std::
                        const std::string& against) {
   Member member;
   set_x(member, swept, scenes, point, against);
-  return {member.x, member.swept.name, member.swept.units, member.others};
+  return {member.x, member.swept.name, member.swept.units, member.fixed_values};
 }
 
 std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const MadeTables& made,
@@ -389,8 +391,8 @@ std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const
       std::map<std::string, std::vector<Member>> groups;
       std::vector<std::string> order;
       for (Member& member : members_of(swept, request)) {
-        if (!groups.contains(member.others)) order.push_back(member.others);
-        groups[member.others].push_back(std::move(member));
+        if (!groups.contains(member.fixed_values)) order.push_back(member.fixed_values);
+        groups[member.fixed_values].push_back(std::move(member));
       }
       for (std::size_t i = 0; i < order.size(); ++i) {
         if (request.settings.quantity == "value")

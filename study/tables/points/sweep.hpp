@@ -16,8 +16,8 @@ class PointScenes;
 /// Place of a sweep point on a curve.
 struct SweptPlace {
   double x = 0;
-  std::string name, units;  // units of x: a strength of taps as its control parameter
-  std::string others;       // values of the sweep that do not vary with it
+  std::string name, units;   // units of x: a strength of taps as its control parameter
+  std::string fixed_values;  // values of the sweep that do not vary with it
 };
 
 /// `against`: JSON pointer, or the name of what is swept; empty: the first of the sweep, the

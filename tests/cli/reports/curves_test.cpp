@@ -38,9 +38,9 @@ TEST_CASE("A logarithm is a straight line on an axis of decades, and tap 0 is ap
   CHECK(lines[9].ends_with(" 100      1000"));
   // Eight lines over 35 columns: each begins about five columns further than the one below.
   for (std::size_t line = 1; line < 8; ++line) {
-    const auto above = lines[line].find('*', 3), below = lines[line + 1].find('*', 3);
+    const auto upper = lines[line].find('*', 3), lower = lines[line + 1].find('*', 3);
     CAPTURE(lines[line], lines[line + 1]);
-    CHECK((above - below >= 3 && above - below <= 6));
+    CHECK((upper - lower >= 3 && upper - lower <= 6));
   }
 }
 
@@ -61,9 +61,9 @@ TEST_CASE("A curve may be flat, or have taps without a value") {
   const std::vector<double> flat(20, 0.5);
   CHECK(lines_of(curve_text("X", flat, 40, Glyphs::ascii))[8].find("**********") !=
         std::string::npos);
-  std::vector<double> some = logarithm(100);
-  for (std::size_t tap = 0; tap < 50; ++tap) some[tap] = std::nan("");
-  CHECK(lines_of(curve_text("X", some, 40, Glyphs::ascii)).size() == 10);
+  std::vector<double> values = logarithm(100);
+  for (std::size_t tap = 0; tap < 50; ++tap) values[tap] = std::nan("");
+  CHECK(lines_of(curve_text("X", values, 40, Glyphs::ascii)).size() == 10);
 }
 
 TEST_CASE("Braille has eight dots a character") {

@@ -12,10 +12,10 @@ TEST_CASE("Every part of a scene is among its effects, on or off") {
     CAPTURE(path);
     const Scene scene = scene_of(text_of(path));
     const std::string text = effects_text(resolved(scene));
-    const auto lists = [&](const std::string& part, bool on) {
+    const auto lists = [&](const std::string& part, bool enabled) {
       const bool has_line = text.find("\n  " + part + " ") != std::string::npos;
-      CHECK(has_line == on);
-      if (!on) CHECK(text.find(part, text.find("\n  off ")) != std::string::npos);
+      CHECK(has_line == enabled);
+      if (!enabled) CHECK(text.find(part, text.find("\n  off ")) != std::string::npos);
     };
     for (const char* part : {"container", "start", "observe"}) lists(part, true);
     lists("protocol", !scene.protocol.empty());

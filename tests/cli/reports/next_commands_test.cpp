@@ -26,23 +26,24 @@ std::string proposed(const std::string& scene, std::size_t points = 1, std::uint
 }  // namespace
 
 TEST_CASE("The next commands are those that make sense for a scene") {
-  const std::string one = R"("protocol": [{"tap": {"dilate": 0.05}, "count": 9}])";
+  const std::string protocol = R"("protocol": [{"tap": {"dilate": 0.05}, "count": 9}])";
   const std::string nothing =
       R"(, "fits": [], "analyse": {"ageing": [], "sweep": []}, "structure": {})";
-  CHECK(proposed("{" + one + nothing + "}") == "fit, analyse ageing");
-  CHECK(proposed("{" + one + nothing + "}", 1, 100, {0, 9}) == "fit, structure");
-  CHECK(proposed("{" + one + nothing + "}", 1, 10, {0}) == "structure, export");
-  CHECK(proposed("{" + one + nothing + "}", 1, 10) == "info");
-  CHECK(proposed("{" + one + nothing + "}", 4, 100, {0}) == "analyse sweep, fit");
+  CHECK(proposed("{" + protocol + nothing + "}") == "fit, analyse ageing");
+  CHECK(proposed("{" + protocol + nothing + "}", 1, 100, {0, 9}) == "fit, structure");
+  CHECK(proposed("{" + protocol + nothing + "}", 1, 10, {0}) == "structure, export");
+  CHECK(proposed("{" + protocol + nothing + "}", 1, 10) == "info");
+  CHECK(proposed("{" + protocol + nothing + "}", 4, 100, {0}) == "analyse sweep, fit");
   CHECK(proposed(R"({"protocol": [{"ramp": {}}, {"ramp": {}}]})", 1, 100, {0}) ==
         "analyse hysteresis, structure");
 }
 
 TEST_CASE("Steps that a scene does itself are not proposed again, except its page") {
-  const std::string one = R"({"protocol": [{"tap": {"dilate": 0.05}, "count": 9}], )";
-  CHECK(proposed(one + R"("fits": [{"observable": "mean_height"}]})") == "analyse ageing, report");
-  CHECK(proposed(one + R"("analyse": {"ageing": [{"observable": "mean_height"}]}})") ==
+  const std::string protocol = R"({"protocol": [{"tap": {"dilate": 0.05}, "count": 9}], )";
+  CHECK(proposed(protocol + R"("fits": [{"observable": "mean_height"}]})") ==
+        "analyse ageing, report");
+  CHECK(proposed(protocol + R"("analyse": {"ageing": [{"observable": "mean_height"}]}})") ==
         "fit, report");
-  CHECK(proposed(one + R"("structure": {"order": {"bin_width": 1}}})", 1, 10, {0}) ==
+  CHECK(proposed(protocol + R"("structure": {"order": {"bin_width": 1}}})", 1, 10, {0}) ==
         "report, export");
 }

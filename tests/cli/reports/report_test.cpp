@@ -44,9 +44,9 @@ std::string report_of_height(double last) {
 }
 
 /// The line about fitting, of realizations with these fractions away from the walls.
-std::string fitting_line_of(const std::vector<double>& before) {
+std::string fitting_line_of(const std::vector<double>& earlier) {
   const TemporaryFolder folder;
-  const auto n = static_cast<std::uint32_t>(before.size());
+  const auto n = static_cast<std::uint32_t>(earlier.size());
   const Study study =
       synthetic::study({.points = 1, .realizations = n, .taps = 0, .snapshot_taps = {}});
   const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());
@@ -59,14 +59,14 @@ std::string fitting_line_of(const std::vector<double>& before) {
                      .mean_rise = 1.5,
                      .corrected_fraction_before = 0.58,
                      .corrected_fraction_after = 0.51,
-                     .central_fraction_before = before[r],
-                     .central_fraction_after = before[r] - 0.01};
+                     .central_fraction_before = earlier[r],
+                     .central_fraction_after = earlier[r] - 0.01};
     store->end({0, r}, state, {.status = RealizationStatus::done, .reason = {}});
   }
   store->finish();
   const std::string text = report(ResultsFile(folder / "a.h5"));
-  const std::size_t at = text.find("fitting between the walls");
-  return at == std::string::npos ? text : text.substr(at, text.find("\n\n", at) - at);
+  const std::size_t index = text.find("fitting between the walls");
+  return index == std::string::npos ? text : text.substr(index, text.find("\n\n", index) - index);
 }
 
 }  // namespace
@@ -110,12 +110,12 @@ TEST_CASE("A report shows the first of many failed realizations and counts the o
     CHECK(report(file).find(failure_lines(file)) != std::string::npos);
     return failure_lines(file);
   };
-  const std::string few = failures(20), many = failures(33);
-  CAPTURE(few, many);
+  const std::string few = failures(20), large = failures(33);
+  CAPTURE(few, large);
   CHECK(std::ranges::count(few, '\n') == 20);
   CHECK(few.find("more failed") == std::string::npos);
-  CHECK(std::ranges::count(many, '\n') == 21);
-  CHECK(many.ends_with("\nand 13 more failed: jostle info --json lists them\n"));
+  CHECK(std::ranges::count(large, '\n') == 21);
+  CHECK(large.ends_with("\nand 13 more failed: jostle info --json lists them\n"));
 }
 
 TEST_CASE("A report shows the columns of an engine as they ask for") {
@@ -151,14 +151,16 @@ TEST_CASE("Some points of a long sweep are shown, and all failed ones") {
   const ResultsFile file(folder / "a.h5");
   const auto points_in = [](const std::string& text) {
     std::size_t n = 0;
-    for (std::size_t at = 0; (at = text.find("\nepsilon = ", at)) != std::string::npos; ++at) ++n;
+    for (std::size_t index = 0; (index = text.find("\nepsilon = ", index)) != std::string::npos;
+         ++index)
+      ++n;
     return n;
   };
-  const std::string some = report(file, {.width = 100});
-  CHECK_THAT(some, Contains("40 of 101 sweep points, evenly spread, and 1 more with failures; "
+  const std::string text = report(file, {.width = 100});
+  CHECK_THAT(text, Contains("40 of 101 sweep points, evenly spread, and 1 more with failures; "
                             "--wide shows all\n"));
-  CHECK(points_in(some) == 41);
-  CHECK_THAT(some, Contains("realization 0 failed (seed"));
+  CHECK(points_in(text) == 41);
+  CHECK_THAT(text, Contains("realization 0 failed (seed"));
   const std::string all = report(file, {.columns = Columns::all});
   CHECK_THAT(all, !Contains("shows all"));
   CHECK(points_in(all) == 101);

@@ -58,22 +58,22 @@ TEST_CASE("All columns have sigma beside every observable, however wide") {
 }
 
 TEST_CASE("A column without a value, or without an error, is marked") {
-  PointSeries one = two_taps();
-  one.columns[0].mean[1] = std::nan("");
-  one.columns[1].error[1] = std::nan("");
-  one.reached = {2, 1};
-  CHECK(tap_table(one, {.width = 80}) ==
+  PointSeries series = two_taps();
+  series.columns[0].mean[1] = std::nan("");
+  series.columns[1].error[1] = std::nan("");
+  series.reached = {2, 1};
+  CHECK(tap_table(series, {.width = 80}) ==
         "tap  M  mean_height    fraction  sweeps\n"
         "  0  2   3.7524(87)  0.5413(21)  6125.0\n"
         "  1  1            -      0.5413  6125.0\n");
 }
 
 TEST_CASE("One realization of many is marked at every tap, and has no deviation") {
-  PointSeries one = two_taps();
-  one.columns.resize(1);
-  one.columns[0].count = one.reached = {1, 1};
-  one.columns[0].sigma = {0, 0};
-  CHECK(tap_table(one, {.width = 80, .columns = Columns::all}) ==
+  PointSeries series = two_taps();
+  series.columns.resize(1);
+  series.columns[0].count = series.reached = {1, 1};
+  series.columns[0].sigma = {0, 0};
+  CHECK(tap_table(series, {.width = 80, .columns = Columns::all}) ==
         "tap  M  mean_height  sigma\n"
         "  0  1       3.7524      -\n"
         "  1  1       3.7524      -\n");

@@ -14,14 +14,14 @@ constexpr double error_is_known = std::numeric_limits<double>::infinity();
 constexpr Layout all_columns{.width = 80, .columns = Columns::all};
 
 Table example() {
-  const std::vector<std::string> both = {"age", "lag"};
+  const std::vector<std::string> axes = {"age", "lag"};
   return {
       .name = "point_0000/ageing",
       .axes = {{"age", {"age"}, std::vector<std::uint64_t>{1, 10}, "taps", "waiting time", ""},
                {"lag", {"lag"}, std::vector<std::uint64_t>{2, 4, 8}, "taps", "lag", ""}},
       .quantities = {{"tau", {}, std::vector{12.345678}, "taps", "memory", "eq. 6"},
                      {"tau_error", {}, std::vector{0.21}, "taps", "", ""},
-                     {"a", both, std::vector{1.0, 2.0, 3.0, 4.0, 5.0, std::nan("")}, "1", "", ""},
+                     {"a", axes, std::vector{1.0, 2.0, 3.0, 4.0, 5.0, std::nan("")}, "1", "", ""},
                      {"kind", {"age"}, std::vector<std::string>{"x", "y, z"}, "", "", ""}},
       .notes = {{"verdict", "it ages"}}};
 }

@@ -29,7 +29,7 @@ TEST_CASE("No line is longer than asked for, and no word is lost") {
   for (const std::size_t width : {30u, 40u, 79u, 200u}) {
     std::istringstream lines(wrapped(text, width)), words(wrapped(text, width)), all(text);
     for (std::string line; std::getline(lines, line);) CHECK(width_of(line) <= width);
-    for (std::string word, same; all >> word;) CHECK((words >> same && same == word));
+    for (std::string word, expected; all >> word;) CHECK((words >> expected && expected == word));
   }
 }
 

@@ -52,20 +52,20 @@ TEST_CASE("Numbers are equal by value, objects in one order") {
 
 TEST_CASE("A pointer leads to a value or nowhere") {
   Json json = Json::parse(R"({"a": [{"b/c": 1}, 2], "~": {"": 3}})");
-  const auto at = [&](const char* pointer) {
+  const auto kind_at = [&](const char* pointer) {
     const Json* found = json.find_pointer(pointer);
     return found ? found->dump() : "nowhere";
   };
-  CHECK(at("") == json.dump());
-  CHECK(at("/a/0/b~1c") == "1");
-  CHECK(at("/a/1") == "2");
-  CHECK(at("/~0/") == "3");
+  CHECK(kind_at("") == json.dump());
+  CHECK(kind_at("/a/0/b~1c") == "1");
+  CHECK(kind_at("/a/1") == "2");
+  CHECK(kind_at("/~0/") == "3");
   for (const char* none : {"a", "/b", "/a/2", "/a/-", "/a/01", "/a/ 1", "/a/1/x", "/~", "/~2"}) {
     CAPTURE(none);
-    CHECK(at(none) == "nowhere");
+    CHECK(kind_at(none) == "nowhere");
   }
   *json.find_pointer("/a/1") = "new";
-  CHECK(at("/a") == R"([{"b/c":1},"new"])");
+  CHECK(kind_at("/a") == R"([{"b/c":1},"new"])");
 }
 
 TEST_CASE("A value of another kind is named") {

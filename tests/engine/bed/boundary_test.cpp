@@ -79,15 +79,17 @@ TEST_CASE("A boundary wraps, compares and clears as the container's own function
         [&](const auto& box) {
           for (int draw = 0; draw < 20'000; ++draw) {
             const auto point = [&] {
-              const auto within = [&](double width) { return width * (3 * random.uniform() - 1); };
-              const double x = within(boundary.width_x), y = within(boundary.width_y);
-              return Vec3{x, y, within(6.3)};
+              const auto coordinate_in = [&](double width) {
+                return width * (3 * random.uniform() - 1);
+              };
+              const double x = coordinate_in(boundary.width_x), y = coordinate_in(boundary.width_y);
+              return Vec3{x, y, coordinate_in(6.3)};
             };
-            const Vec3 r = wrapped(box, point()), other = wrapped(box, point());
+            const Vec3 r = wrapped(box, point()), neighbour = wrapped(box, point());
             REQUIRE(wrapped(boundary, r) == r);
             const Vec3 moved = r + Vec3{0.3, -0.3, 0.2};
             REQUIRE(wrapped(boundary, moved) == wrapped(box, moved));
-            REQUIRE(separation(boundary, r, other) == separation(box, r, other));
+            REQUIRE(separation(boundary, r, neighbour) == separation(box, r, neighbour));
             REQUIRE(clear_of_boundaries(boundary, r) == clear_of_boundaries(box, r));
             if (boundary.periodic_z) {
               REQUIRE(boundary_depth(boundary, r) == 0);
@@ -112,8 +114,11 @@ TEST_CASE("The nearest face of a container is as deep as its boundary, and norma
     const Boundary boundary(container);
     const Faces faces(boundary);
     for (int draw = 0; draw < 2000 && faces.size() > 0; ++draw) {
-      const auto within = [&](double width) { return width * (1.2 * random.uniform() - 0.1); };
-      const double x = within(boundary.width_x), y = within(boundary.width_y), z = within(5);
+      const auto coordinate_in = [&](double width) {
+        return width * (1.2 * random.uniform() - 0.1);
+      };
+      const double x = coordinate_in(boundary.width_x), y = coordinate_in(boundary.width_y),
+                   z = coordinate_in(5);
       const Vec3 r{x, y, z};
       double least = 100;
       for (const Face& face : faces) {

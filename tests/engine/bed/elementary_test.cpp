@@ -63,8 +63,8 @@ TEST_CASE("the natural logarithm is good to 2 ulp") {
   for (double x = 0x1p-60; x < 1e6; x *= 1.0000737) {
     worst = std::max(worst, ulps(natural_log(x), std::log(static_cast<long double>(x))));
   }
-  for (double below = 1e-16; below < 0.5; below *= 1.0031) {
-    const double x = 1 - below;
+  for (double argument = 1e-16; argument < 0.5; argument *= 1.0031) {
+    const double x = 1 - argument;
     if (x < 1) worst = std::max(worst, ulps(natural_log(x), std::log(static_cast<long double>(x))));
   }
   CHECK(worst <= 2);

@@ -56,9 +56,9 @@ TEST_CASE("the logarithm of a lognormal diameter is symmetric about its median")
   CHECK(range.greatest == Approx(median * std::exp(3 * std::sqrt(std::log(1.16)))).epsilon(1e-14));
   RandomStream random(stream_key(12, 0, 0, Purpose::sizes));
   const auto sizes = draw_sizes({{"a", 10'000, law}}, random);
-  int below = 0;
-  for (std::size_t i = 0; i < sizes->size(); ++i) below += sizes->diameter(i) < median;
-  CHECK(below == Approx(5000).margin(4 * 50));
+  int n_below = 0;
+  for (std::size_t i = 0; i < sizes->size(); ++i) n_below += sizes->diameter(i) < median;
+  CHECK(n_below == Approx(5000).margin(4 * 50));
 }
 
 TEST_CASE("kinds are drawn in their order, the same from the same stream") {
@@ -66,8 +66,8 @@ TEST_CASE("kinds are drawn in their order, the same from the same stream") {
                                        {"listed", 3, ListedDiameters{{1, 0.5, 2}}},
                                        {"spread", 4, NormalDiameter{1, 0.1}}};
   RandomStream first(stream_key(13, 0, 4, Purpose::sizes));
-  RandomStream again(stream_key(13, 0, 4, Purpose::sizes));
-  RandomStream other(stream_key(13, 0, 5, Purpose::sizes));
+  RandomStream repeated(stream_key(13, 0, 4, Purpose::sizes));
+  RandomStream second(stream_key(13, 0, 5, Purpose::sizes));
   const auto sizes = draw_sizes(kinds, first);
   REQUIRE(sizes->size() == 9);
   CHECK(sizes->diameter(0) == 3);
@@ -76,8 +76,8 @@ TEST_CASE("kinds are drawn in their order, the same from the same stream") {
   CHECK(sizes->diameter(4) == 2);
   CHECK(sizes->kind_of() == std::vector<std::uint32_t>{0, 0, 1, 1, 1, 2, 2, 2, 2});
   CHECK(sizes->kinds() == std::vector<SphereKind>{{"large", 2}, {"listed", 1}, {"spread", 1}});
-  CHECK(*draw_sizes(kinds, again) == *sizes);
-  CHECK_FALSE(*draw_sizes(kinds, other) == *sizes);
+  CHECK(*draw_sizes(kinds, repeated) == *sizes);
+  CHECK_FALSE(*draw_sizes(kinds, second) == *sizes);
 }
 
 TEST_CASE("laws that leave the range of diameters are rejected") {

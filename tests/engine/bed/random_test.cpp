@@ -48,7 +48,7 @@ TEST_CASE("uniform numbers are uniform") {
     REQUIRE((u > 0 && u < 1));
     sum += u;
     sum_of_squares += u * u;
-    fives += stream.below(7) == 5;
+    fives += stream.integer_below(7) == 5;
   }
   // Standard errors: sqrt(1/12 n), sqrt(4/45 n), sqrt(6/49 n).
   CHECK(std::abs(sum / n - 0.5) < 3 * std::sqrt(1.0 / 12 / n));

@@ -56,9 +56,9 @@ TEST_CASE("a search among several sizes misses nothing and meets nothing twice")
             Boundary(container), skin, 120, [&](std::uint32_t i) { return packing.centres[i]; },
             [&](std::uint32_t i) { return packing.radius(i); });
         check_searches(grid, packing, skin);
-        const Packing others = points(container, graded_diameters(120, 0.2, ratio), random);
+        const Packing second = points(container, graded_diameters(120, 0.2, ratio), random);
         for (std::uint32_t i = 0; i < 120; i += 2) {
-          packing.centres[i] = others.centres[i];
+          packing.centres[i] = second.centres[i];
           grid.relocate(i, packing.centres[i]);
         }
         check_searches(grid, packing, skin);

@@ -43,8 +43,9 @@ double fraction_by_cuts(const Packing& packing, HeightWindow window) {
   for (int k = 0; k < cuts; ++k) {
     const double height = window.low + (window.high - window.low) * (k + 0.5) / cuts;
     for (std::size_t i = 0; i < packing.centres.size(); ++i) {
-      const double off = height - packing.centres[i].z, r = packing.radius(i);
-      if (off * off < r * r) sum += std::numbers::pi * (r * r - off * off);
+      const double height_difference = height - packing.centres[i].z, r = packing.radius(i);
+      if (height_difference * height_difference < r * r)
+        sum += std::numbers::pi * (r * r - height_difference * height_difference);
     }
   }
   return sum / cuts / footprint_area(packing.container);
@@ -70,15 +71,15 @@ TEST_CASE("wrong sizes are rejected with what is wrong") {
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinite = std::numeric_limits<double>::infinity();
-  const std::vector<SphereKind> one{{"a", 1}};
-  CHECK(fault({0.2, 2}, {0, 0}, one) == "none");
-  CHECK(fault({1, 10}, {0, 0}, one) == "none");
-  CHECK(fault({}, {}, one) == "none");
+  const std::vector<SphereKind> kinds{{"a", 1}};
+  CHECK(fault({0.2, 2}, {0, 0}, kinds) == "none");
+  CHECK(fault({1, 10}, {0, 0}, kinds) == "none");
+  CHECK(fault({}, {}, kinds) == "none");
   for (const double bad : {nan, infinite, -1.0, 0.0, 0.199, 10.01})
-    CHECK(fault({1, bad}, {0, 0}, one).starts_with("sphere 1 has the diameter"));
-  CHECK(fault({0.5, 5.01}, {0, 0}, one).find("ratio must not exceed 10") != std::string::npos);
-  CHECK(fault({1, 1}, {0}, one).find("kinds of 1 spheres") != std::string::npos);
-  CHECK(fault({1}, {1}, one) == "sphere 0 has kind 1, and 1 kinds exist, counted from 0");
+    CHECK(fault({1, bad}, {0, 0}, kinds).starts_with("sphere 1 has the diameter"));
+  CHECK(fault({0.5, 5.01}, {0, 0}, kinds).find("ratio must not exceed 10") != std::string::npos);
+  CHECK(fault({1, 1}, {0}, kinds).find("kinds of 1 spheres") != std::string::npos);
+  CHECK(fault({1}, {1}, kinds) == "sphere 0 has kind 1, and 1 kinds exist, counted from 0");
   CHECK(fault({1}, {0}, {{"", 1}}).find("has no name") != std::string::npos);
   CHECK(fault({1}, {0}, {{"a", 1}, {"a", 1}}).find("two kinds") != std::string::npos);
   for (const double bad : {nan, 0.0, -1.0, 2000.0})

@@ -79,12 +79,12 @@ TEST_CASE("a window without depth gives the area fraction of its plane cut") {
 
 TEST_CASE("a sphere as wide as its tube fills it at its equator, and no more") {
   for (const double z : {0.5, 0.7, 1.3, 12.45}) {
-    const Packing one{Cylinder{1}, {{0.5, 0.5, z}}};
+    const Packing packing{Cylinder{1}, {{0.5, 0.5, z}}};
     for (const double depth : {0.0, 1e-6, 1e-5, 1e-4}) {
       const HeightWindow window{z - 0.5 * depth, z + 0.5 * depth};
-      CHECK(solids_fraction(one, window) <= 1);
-      CHECK(solids_fraction(one, window) == Approx(1).epsilon(1e-8));
-      CHECK(tapered_solids_fraction(one, window, 1e-4) <= 1);
+      CHECK(solids_fraction(packing, window) <= 1);
+      CHECK(solids_fraction(packing, window) == Approx(1).epsilon(1e-8));
+      CHECK(tapered_solids_fraction(packing, window, 1e-4) <= 1);
     }
   }
   const Packing twice{Cylinder{1}, {{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}}};

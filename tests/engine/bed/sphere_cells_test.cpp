@@ -47,7 +47,7 @@ TEST_CASE("Cells meet every image of every sphere near a point, also after moves
     SphereCells cells(container, 200, height);
     for (int i = 0; i < 200; ++i) cells.insert(draw());
     for (int i = 0; i < 300; ++i) {
-      cells.move(static_cast<std::uint32_t>(random.below(200)), draw());
+      cells.move(static_cast<std::uint32_t>(random.integer_below(200)), draw());
       const Vec3 p = draw();
       std::size_t count = 0;
       cells.any_near(p, 1, [&](std::uint32_t, Vec3 image) {

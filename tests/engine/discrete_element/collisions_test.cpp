@@ -18,14 +18,14 @@ const PeriodicBox box{20, 20};
 /// Two spheres that meet head-on along a direction that is no axis.
 double speed_ratio(const ContactLaw& law, double speed, double finer) {
   const ReducedSettings units = settings(law, 0, finer);
-  const Vec3 along = {2.0 / 3, 1.0 / 3, 2.0 / 3};
+  const Vec3 direction = {2.0 / 3, 1.0 / 3, 2.0 / 3};
   const double gap = 1 + 0.3 * speed * units.time_step;
   GrainLoop loop = loop_of(box, units,
-                           {grain({5, 5, 5}, 0.5 * speed * along),
-                            grain(Vec3{5, 5, 5} + gap * along, -0.5 * speed * along)});
+                           {grain({5, 5, 5}, 0.5 * speed * direction),
+                            grain(Vec3{5, 5, 5} + gap * direction, -0.5 * speed * direction)});
   run_contact(loop, units);
-  const auto after = loop.state().grains;
-  return dot(after[1].velocity - after[0].velocity, along) / speed;
+  const auto grains_after = loop.state().grains;
+  return dot(grains_after[1].velocity - grains_after[0].velocity, direction) / speed;
 }
 
 }  // namespace
@@ -58,8 +58,8 @@ TEST_CASE("half the step makes a quarter of the error of a latched spring") {
       GrainLoop loop =
           loop_of(box, units, {grain({5, 5, 6 + gap}, {0, 0, -speed}), grain({5, 5, 5})});
       run_contact(loop, units);
-      const auto after = loop.state().grains;
-      const double found = (after[0].velocity.z - after[1].velocity.z) / speed;
+      const auto grains_after = loop.state().grains;
+      const double found = (grains_after[0].velocity.z - grains_after[1].velocity.z) / speed;
       sum += (found - e) * (found - e);
     }
     return std::sqrt(sum / phases);
@@ -79,20 +79,20 @@ TEST_CASE("an impact keeps momentum and angular momentum to rounding") {
   // Velocities are half a step before the positions; between impacts that changes neither sum.
   const auto sums = [&] {
     Vec3 momentum, angular;
-    for (const GrainState& one : loop.state().grains) {
-      momentum = momentum + one.velocity;
-      angular = angular + cross(one.centre, one.velocity) + 0.1 * one.spin;
+    for (const GrainState& grain : loop.state().grains) {
+      momentum = momentum + grain.velocity;
+      angular = angular + cross(grain.centre, grain.velocity) + 0.1 * grain.spin;
     }
     return std::pair(momentum, angular);
   };
-  const auto before = sums();
+  const auto state_before = sums();
   const double energy = loop.kinetic_energy();
   run_contact(loop, units);
-  const auto after = sums();
+  const auto state_after = sums();
   REQUIRE(loop.kinetic_energy() < 0.99 * energy);
-  CHECK(length(after.first - before.first) < 1e-13);
+  CHECK(length(state_after.first - state_before.first) < 1e-13);
   // The force turns with the half step that the velocities lag: exact to the step, not beyond.
-  CHECK(length(after.second - before.second) < 1e-11);
+  CHECK(length(state_after.second - state_before.second) < 1e-11);
 }
 
 TEST_CASE("a collision is the same turned and boosted") {
@@ -183,17 +183,17 @@ TEST_CASE("a sphere that slides fast on springs and dashpots rubs away mu N time
     REQUIRE(units.floor.shear_damping * speed > 10 * mu);
     const double springs_hold =
         0.5 / units.floor.stiffness + 0.5 * mu * mu / units.floor.tangential;
-    double way = 0, before = 0;
+    double way = 0, old_friction = 0;
     for (int look = 0; look < 400; ++look) {
       loop.run(5);
       const Energies now = loop.energies();
       const GrainState sphere = loop.state().grains[0];
       way += 5 * units.time_step * (sphere.velocity.x - 0.5 * sphere.spin.y);
-      CHECK(now.friction > before);
+      CHECK(now.friction > old_friction);
       CHECK(now.friction == Approx(mu * way).epsilon(0.01).margin(1e-4));
       CHECK(now.elastic < 1.05 * springs_hold);
       CHECK(std::abs(start - now.held() - now.dissipated()) < 1e-3 * mu * way + 1e-4);
-      before = now.friction;
+      old_friction = now.friction;
     }
   }
 }
@@ -221,18 +221,18 @@ TEST_CASE("collisions go as those of LAMMPS, that stick and that slide") {
   units.spheres = of_mass(0.5);
   units.floor = units.sides = of_mass(1);
   constexpr double gap = 1.0000001;
-  const Vec3 other = {5 + gap * 0.6, 5, 5 + gap * 0.8}, above = {5, 5, 0.5000001};
+  const Vec3 second = {5 + gap * 0.6, 5, 5 + gap * 0.8}, third = {5, 5, 0.5000001};
   const auto loop_from = [&](const std::vector<GrainState>& grains) {
     return loop_of(box, units, grains);
   };
   std::map<std::string, GrainLoop> loops;
   loops.emplace("# pair", loop_from({grain({5, 5, 5}, {speed, 0.2 * speed, 0.8 * speed}),
-                                     grain(other, {-0.3 * speed, 0, -0.9 * speed})}));
-  loops.emplace("# floor", loop_from({grain(above, {0.15 * speed, 0, -speed})}));
+                                     grain(second, {-0.3 * speed, 0, -0.9 * speed})}));
+  loops.emplace("# floor", loop_from({grain(third, {0.15 * speed, 0, -speed})}));
   loops.emplace("# sliding pair", loop_from({grain({5, 5, 5}, {7 * speed, 2 * speed, -4 * speed}),
-                                             grain(other, {}, {0.8, -2, -0.6})}));
+                                             grain(second, {}, {0.8, -2, -0.6})}));
   loops.emplace("# sliding floor",
-                loop_from({grain(above, {8 * speed, 2 * speed, -speed}, {0.5, 0, 0})}));
+                loop_from({grain(third, {8 * speed, 2 * speed, -speed}, {0.5, 0, 0})}));
 
   std::ifstream trace(test_data("lammps_collisions.txt"));
   const auto largest = [](Vec3 a) {
@@ -253,12 +253,13 @@ TEST_CASE("collisions go as those of LAMMPS, that stick and that slide") {
     numbers >> step;
     loop->run(step - std::exchange(done, step));
     CAPTURE(step);
-    for (const GrainState& one : loop->state().grains) {
+    for (const GrainState& grain : loop->state().grains) {
       Vec3 centre, velocity, spin;
-      for (Vec3* into : {&centre, &velocity, &spin}) numbers >> into->x >> into->y >> into->z;
-      CHECK(largest(one.centre - centre) < 1e-9);
-      CHECK(largest(one.seen_velocity - velocity) < 1e-6 * speed);
-      CHECK(0.5 * largest(one.seen_spin - spin) < 1e-6 * speed);
+      for (Vec3* vector : {&centre, &velocity, &spin})
+        numbers >> vector->x >> vector->y >> vector->z;
+      CHECK(largest(grain.centre - centre) < 1e-9);
+      CHECK(largest(grain.seen_velocity - velocity) < 1e-6 * speed);
+      CHECK(0.5 * largest(grain.seen_spin - spin) < 1e-6 * speed);
       ++compared;
     }
   }

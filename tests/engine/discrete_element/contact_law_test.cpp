@@ -20,13 +20,13 @@ constexpr LawConstants constants{.stiffness = 4e4,
 
 /// Two spheres pressed together along z, the first moving along x.
 Meeting<double> pressed(double overlap, double speed) {
-  Meeting<double> at;
-  at.normal = {0, 0, 1};
-  at.overlap = overlap;
-  at.arm = {0, 0, 0.5 * (1 - overlap)};
-  at.velocity = {speed, 0, 0};
-  at.spin = {0, 0, 0};
-  return at;
+  Meeting<double> meeting;
+  meeting.normal = {0, 0, 1};
+  meeting.overlap = overlap;
+  meeting.arm = {0, 0, 0.5 * (1 - overlap)};
+  meeting.velocity = {speed, 0, 0};
+  meeting.spin = {0, 0, 0};
+  return meeting;
 }
 
 /// T after so much displacement along x, in many steps.
@@ -38,9 +38,9 @@ double sheared(Law& law, double overlap, double displacement) {
 }
 
 void shear_aside(Law& law, double overlap, double displacement) {
-  Meeting<double> at = pressed(overlap, 0);
-  at.velocity.y = displacement / constants.time_step;
-  law(at, constants);
+  Meeting<double> meeting = pressed(overlap, 0);
+  meeting.velocity.y = displacement / constants.time_step;
+  law(meeting, constants);
 }
 
 }  // namespace
@@ -71,19 +71,19 @@ TEST_CASE("the latched spring loses the area of its loop, whatever path it takes
         std::vector{0.001, 0.0002, 0.002, 0.0001, 0.0015, 0.0012, 0.003, 0.00059, 0.001}}) {
     WaltonBraunLaw<double, false> law{};
     constexpr int parts = 4000;
-    double at = 0, work = 0, before = 0, lost = 0, greatest = 0;
-    const auto go_to = [&](double to) {
-      const double from = at;
+    double overlap_now = 0, work = 0, force_before = 0, lost = 0, greatest = 0;
+    const auto go_to = [&](double high) {
+      const double low = overlap_now;
       for (int k = 1; k <= parts; ++k) {
-        at = from + (to - from) * k / parts;
-        const auto act = law(pressed(at, 0), constants);
-        work += 0.5 * (before + act.force.z) * (to - from) / parts;  // on the spring
-        before = act.force.z;
+        overlap_now = low + (high - low) * k / parts;
+        const auto act = law(pressed(overlap_now, 0), constants);
+        work += 0.5 * (force_before + act.force.z) * (high - low) / parts;  // on the spring
+        force_before = act.force.z;
         lost += act.dissipated_normally;
         CHECK(act.force.z >= 0);
-        CHECK(act.force.z <= constants.stiffness * std::max(0.0, at) * (1 + 1e-12));
+        CHECK(act.force.z <= constants.stiffness * std::max(0.0, overlap_now) * (1 + 1e-12));
       }
-      greatest = std::max(greatest, to);
+      greatest = std::max(greatest, high);
     };
     for (const double turn : turns) {
       go_to(turn);
@@ -112,10 +112,10 @@ TEST_CASE("the tangential force follows Mindlin & Deresiewicz' curve at a consta
   const double turned_back = sheared(law, overlap, -back);
   CHECK(turned_back == Approx(curve(limit + top, back) - limit).epsilon(2e-3));
   // Forward again, from the last reversal.
-  const double again = 0.3 * loaded;
-  const double end = sheared(law, overlap, again);
+  const double reloaded = 0.3 * loaded;
+  const double end = sheared(law, overlap, reloaded);
   const double room = limit - turned_back;
-  CHECK(end == Approx(limit - curve(room, again)).epsilon(2e-3));
+  CHECK(end == Approx(limit - curve(room, reloaded)).epsilon(2e-3));
   // And until it slides.
   CHECK(sheared(law, overlap, 3 * loaded) == Approx(limit));
 }
@@ -128,20 +128,20 @@ TEST_CASE("a path a little to one side of a straight one has nearly its tangenti
   for (const std::vector<double>& path :
        {std::vector{1.0, -1.8}, std::vector{1.0, -1.8, 1.6}, std::vector{1.0, -0.3, 0.4},
         std::vector{0.6, -1.0, 0.2, -0.1}}) {
-    const auto end = [&](double aside) {
+    const auto end = [&](double slip) {
       Law law{};
       double force = 0;
       for (const double part : path) {
         force = sheared(law, overlap, part * loaded);
-        shear_aside(law, overlap, aside * loaded);
+        shear_aside(law, overlap, slip * loaded);
       }
       return force;
     };
     const double straight = end(0);
-    for (const double aside : {1e-2, 1e-3, 1e-4, 1e-6}) {
-      CAPTURE(path, aside);
-      CHECK(std::abs(end(aside) - straight) < (3 * aside + 1e-3) * limit);
-      CHECK(std::abs(end(-aside) - straight) < (3 * aside + 1e-3) * limit);
+    for (const double slip : {1e-2, 1e-3, 1e-4, 1e-6}) {
+      CAPTURE(path, slip);
+      CHECK(std::abs(end(slip) - straight) < (3 * slip + 1e-3) * limit);
+      CHECK(std::abs(end(-slip) - straight) < (3 * slip + 1e-3) * limit);
     }
   }
 }
@@ -215,45 +215,45 @@ TEST_CASE("as the normal force falls the tangential one is cut to mu N") {
 TEST_CASE("the tangential force keeps its length and plane while the pair turns rigidly") {
   Law law{};
   sheared(law, 0.002, 1e-4);
-  const double before = std::sqrt(dot(law.tangential, law.tangential));
+  const double previous = std::sqrt(dot(law.tangential, law.tangential));
   const double turn = 1e-3;  // radians a step
-  Meeting<double> at = pressed(0.002, 0);
+  Meeting<double> meeting = pressed(0.002, 0);
   const LawConstants slow = [] {
-    LawConstants one = constants;
-    one.time_step = 1;
-    return one;
+    LawConstants changed = constants;
+    changed.time_step = 1;
+    return changed;
   }();
   // About x: the normal turns in y-z, and the surfaces with it, so nothing slides.
   for (int k = 1; k <= 1571; ++k) {
-    at.normal = {0, -std::sin(turn * k), std::cos(turn * k)};
-    at.arm = scaled(0.499, at.normal);
-    at.spin = {2 * turn, 0, 0};
-    at.velocity = cross(Vector3<double>{turn, 0, 0}, scaled(0.998, at.normal));
-    law(at, slow);
+    meeting.normal = {0, -std::sin(turn * k), std::cos(turn * k)};
+    meeting.arm = scaled(0.499, meeting.normal);
+    meeting.spin = {2 * turn, 0, 0};
+    meeting.velocity = cross(Vector3<double>{turn, 0, 0}, scaled(0.998, meeting.normal));
+    law(meeting, slow);
   }
-  CHECK(std::sqrt(dot(law.tangential, law.tangential)) == Approx(before).epsilon(1e-9));
-  CHECK(std::abs(dot(law.tangential, at.normal)) < 1e-12 * before);
+  CHECK(std::sqrt(dot(law.tangential, law.tangential)) == Approx(previous).epsilon(1e-9));
+  CHECK(std::abs(dot(law.tangential, meeting.normal)) < 1e-12 * previous);
   // About its own normal: the force turns with the spheres.
   const Vector3<double> start = law.tangential;
-  at.velocity = {0, 0, 0};
-  at.spin = scaled(2 * turn, at.normal);
-  for (int k = 0; k < 1571; ++k) law(at, slow);
-  const double cosine = dot(law.tangential, start) / (before * before);
+  meeting.velocity = {0, 0, 0};
+  meeting.spin = scaled(2 * turn, meeting.normal);
+  for (int k = 0; k < 1571; ++k) law(meeting, slow);
+  const double cosine = dot(law.tangential, start) / (previous * previous);
   CHECK(std::abs(cosine - std::cos(1.571)) < 2e-3);
-  CHECK(std::sqrt(dot(law.tangential, law.tangential)) == Approx(before).epsilon(1e-9));
+  CHECK(std::sqrt(dot(law.tangential, law.tangential)) == Approx(previous).epsilon(1e-9));
 }
 
 TEST_CASE("a tangential force too small to be squared stays a number") {
   for (const double tiny : {1e-135, 1e-145, 1e-155, 1e-160, 1e-200, 1e-310}) {
     CAPTURE(tiny);
-    Meeting<double> at = pressed(0.002, 0);
-    at.spin = {1, 1, 1};
+    Meeting<double> meeting = pressed(0.002, 0);
+    meeting.spin = {1, 1, 1};
     Law latched{};
     latched.tangential = {tiny, 0, tiny};
     LinearLaw<double, true> linear{{tiny, 0, tiny}};
     for (int k = 0; k < 3; ++k) {
-      CHECK(std::isfinite(dot(latched(at, constants).force, at.normal)));
-      CHECK(std::isfinite(dot(linear(at, constants).force, at.normal)));
+      CHECK(std::isfinite(dot(latched(meeting, constants).force, meeting.normal)));
+      CHECK(std::isfinite(dot(linear(meeting, constants).force, meeting.normal)));
       CHECK(std::isfinite(dot(latched.tangential, latched.tangential)));
       CHECK(std::isfinite(dot(linear.spring, linear.spring)));
     }

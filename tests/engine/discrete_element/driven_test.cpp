@@ -38,14 +38,15 @@ struct ShakenBed {
   }
 };
 
-bool same(const std::vector<double>& a, const std::vector<double>& b) {
+bool is_same(const std::vector<double>& a, const std::vector<double>& b) {
   bool equal = a.size() == b.size();
   for (std::size_t k = 0; equal && k < a.size(); ++k)
     equal = a[k] == b[k] || (std::isnan(a[k]) && std::isnan(b[k]));
   return equal;
 }
-bool same(const DrivenBed& a, const DrivenBed& b) {
-  return same(a.fraction, b.fraction) && same(a.lateral, b.lateral) && same(a.vertical, b.vertical);
+bool is_same(const DrivenBed& a, const DrivenBed& b) {
+  return is_same(a.fraction, b.fraction) && is_same(a.lateral, b.lateral) &&
+         is_same(a.vertical, b.vertical);
 }
 
 }  // namespace
@@ -90,10 +91,10 @@ TEST_CASE("what is watched of a motion does not depend on slices, and nothing on
     CHECK(a.centres == b.centres);
     const DrivenBed driven = straight.dynamics->mechanics().driven;
     CHECK(driven.fraction.size() > 3);
-    CHECK(same(driven, stopped.dynamics->mechanics().driven));
+    CHECK(is_same(driven, stopped.dynamics->mechanics().driven));
     CHECK(unwatched.dynamics->mechanics().driven.fraction.empty());
     stopped.store_and_restore();
-    CHECK(same(driven, stopped.dynamics->mechanics().driven));
+    CHECK(is_same(driven, stopped.dynamics->mechanics().driven));
     // The next tap is not watched unless it is asked for.
     RandomStream random(stream_key(1, 0, 0, Purpose::tap));
     straight.dynamics->tap(tap, random);
@@ -125,13 +126,14 @@ TEST_CASE("the granular temperature of a driven bed is the variance of its veloc
       double x2 = 0, y2 = 0, z2 = 0;
     };
     std::map<int, Moments> bins;
-    for (const GrainState& one : state.grains) {
-      Moments& bin = bins[static_cast<int>((one.centre.z - motion.at(time).height) / bin_width)];
+    for (const GrainState& grain : state.grains) {
+      Moments& bin =
+          bins[static_cast<int>((grain.centre.z - motion.place_at(time).height) / bin_width)];
       bin.n += 1;
-      bin.sum = bin.sum + one.velocity;
-      bin.x2 += one.velocity.x * one.velocity.x;
-      bin.y2 += one.velocity.y * one.velocity.y;
-      bin.z2 += one.velocity.z * one.velocity.z;
+      bin.sum = bin.sum + grain.velocity;
+      bin.x2 += grain.velocity.x * grain.velocity.x;
+      bin.y2 += grain.velocity.y * grain.velocity.y;
+      bin.z2 += grain.velocity.z * grain.velocity.z;
     }
     for (const auto& [k, bin] : bins) {
       const Vec3 mean = (1 / bin.n) * bin.sum;
@@ -147,12 +149,12 @@ TEST_CASE("the granular temperature of a driven bed is the variance of its veloc
   const DrivenBed driven = bed.dynamics->mechanics().driven;
   REQUIRE(driven.lateral.size() >= 3);
   for (int k = 0; k < 3; ++k) {
-    const auto at = static_cast<std::size_t>(k);
+    const auto index = static_cast<std::size_t>(k);
     const Sums& bin = sums[k];
-    CAPTURE(k, driven.lateral[at], driven.vertical[at]);
-    CHECK(driven.fraction[at] == Approx(bin.n / all).epsilon(0.02));
-    CHECK(driven.lateral[at] == Approx(bin.lateral / bin.freedom / unit / unit).epsilon(0.1));
-    CHECK(driven.vertical[at] == Approx(bin.vertical / bin.freedom / unit / unit).epsilon(0.1));
+    CAPTURE(k, driven.lateral[index], driven.vertical[index]);
+    CHECK(driven.fraction[index] == Approx(bin.n / all).epsilon(0.02));
+    CHECK(driven.lateral[index] == Approx(bin.lateral / bin.freedom / unit / unit).epsilon(0.1));
+    CHECK(driven.vertical[index] == Approx(bin.vertical / bin.freedom / unit / unit).epsilon(0.1));
   }
   // The floor puts energy into vertical motion; collisions share it with the lateral.
   CHECK(driven.lateral[0] < driven.vertical[0]);
@@ -165,11 +167,11 @@ TEST_CASE("a state with forged sums of a driven bed is refused") {
   const std::vector<std::byte> state = bed.dynamics->save();
   REQUIRE(grain_state(state).driven.samples > 0);
   const auto refused = [&](auto change) {
-    GrainDynamicsState one = grain_state(state);
-    change(one.driven);
-    CHECK_THROWS_AS(bed.dynamics->restore(bytes_of(one)), StateError);
+    GrainDynamicsState changed = grain_state(state);
+    change(changed.driven);
+    CHECK_THROWS_AS(bed.dynamics->restore(bytes_of(changed)), StateError);
   };
-  refused([](DrivenSums& one) { one.bin_width = std::numeric_limits<double>::infinity(); });
-  refused([](DrivenSums& one) { one.bins[0].lateral = std::nan(""); });
+  refused([](DrivenSums& sums) { sums.bin_width = std::numeric_limits<double>::infinity(); });
+  refused([](DrivenSums& sums) { sums.bins[0].lateral = std::nan(""); });
   CHECK_THROWS_AS(bed.dynamics->restore(std::span(state).first(40)), StateError);
 }

@@ -135,38 +135,39 @@ TEST_CASE("a state of other bytes, of another engine or another bed is refused")
   dynamics->settle(RandomSettle{});
   dynamics->advance(20'000);
   const std::vector<std::byte> state = dynamics->save();
-  auto other = grains({});
-  other->load(dilute_column(box, 21, 1));
-  CHECK_THROWS_AS(other->restore(state), StateError);
-  other->load(dilute_column(box, 20, 1));
-  CHECK_NOTHROW(other->restore(state));
+  auto second = grains({});
+  second->load(dilute_column(box, 21, 1));
+  CHECK_THROWS_AS(second->restore(state), StateError);
+  second->load(dilute_column(box, 20, 1));
+  CHECK_NOTHROW(second->restore(state));
   for (const std::size_t length :
        {std::size_t{0}, std::size_t{3}, state.size() / 2, state.size() - 1})
-    CHECK_THROWS_AS(other->restore(std::span(state).first(length)), StateError);
+    CHECK_THROWS_AS(second->restore(std::span(state).first(length)), StateError);
   std::vector<std::byte> forged = state;
   forged.push_back(std::byte{0});
-  CHECK_THROWS_AS(other->restore(forged), StateError);
+  CHECK_THROWS_AS(second->restore(forged), StateError);
   // Every number in turn that is none, or too large for any list.
   const auto refused = [&](auto change) {
-    GrainDynamicsState one = grain_state(state);
-    change(one);
-    CHECK_THROWS_AS(other->restore(bytes_of(one)), StateError);
+    GrainDynamicsState changed = grain_state(state);
+    change(changed);
+    CHECK_THROWS_AS(second->restore(bytes_of(changed)), StateError);
   };
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (const double x : {none, 1e300, -1e9}) {
-    refused([&](GrainDynamicsState& one) { one.loop.grains.back().centre.x = x; });
-    refused([&](GrainDynamicsState& one) { one.loop.grains.front().centre.z = x; });
+    refused([&](GrainDynamicsState& changed) { changed.loop.grains.back().centre.x = x; });
+    refused([&](GrainDynamicsState& changed) { changed.loop.grains.front().centre.z = x; });
   }
-  refused([&](GrainDynamicsState& one) { one.loop.grains.back().seen_spin.y = none; });
-  refused([&](GrainDynamicsState& one) { one.loop.motion.amplitude = none; });
-  refused([&](GrainDynamicsState& one) { one.loop.motion.frequency = 0; });
-  refused([&](GrainDynamicsState& one) { one.loop.motion.half_periods = ~std::uint64_t{0}; });
-  refused([&](GrainDynamicsState& one) { one.before.kinetic = none; });
-  refused([&](GrainDynamicsState& one) { one.loop.floor_work = none; });
-  refused([&](GrainDynamicsState& one) { one.loop.pairs = {{5, 5, {}, {}}}; });
-  refused([&](GrainDynamicsState& one) { one.loop.pairs = {{5, 20, {}, {}}}; });
-  refused([&](GrainDynamicsState& one) { one.loop.sides = {{20, 0, {}}}; });
-  refused([&](GrainDynamicsState& one) { one.loop.sides = {{0, 5, {}}}; });
+  refused([&](GrainDynamicsState& changed) { changed.loop.grains.back().seen_spin.y = none; });
+  refused([&](GrainDynamicsState& changed) { changed.loop.motion.amplitude = none; });
+  refused([&](GrainDynamicsState& changed) { changed.loop.motion.frequency = 0; });
+  refused(
+      [&](GrainDynamicsState& changed) { changed.loop.motion.half_periods = ~std::uint64_t{0}; });
+  refused([&](GrainDynamicsState& changed) { changed.start_energies.kinetic = none; });
+  refused([&](GrainDynamicsState& changed) { changed.loop.floor_work = none; });
+  refused([&](GrainDynamicsState& changed) { changed.loop.pairs = {{5, 5, {}, {}}}; });
+  refused([&](GrainDynamicsState& changed) { changed.loop.pairs = {{5, 20, {}, {}}}; });
+  refused([&](GrainDynamicsState& changed) { changed.loop.sides = {{20, 0, {}}}; });
+  refused([&](GrainDynamicsState& changed) { changed.loop.sides = {{0, 5, {}}}; });
 }
 
 TEST_CASE("stiff and strongly damped contacts are resolved, a step that is too long is found out") {
@@ -207,7 +208,7 @@ TEST_CASE(
     RandomStream random(stream_key(1, 0, 0, Purpose::tap));
     dynamics->tap(Lift{lift}, random);
     GrainDynamicsState state = grain_state(dynamics->save());
-    for (GrainState& one : state.loop.grains) one.centre.z += share * lift;
+    for (GrainState& grain : state.loop.grains) grain.centre.z += share * lift;
     dynamics->restore(bytes_of(state));
     if (std::abs(share) > 0.1) {
       CHECK_THROWS_WITH(settled_values(*dynamics, 1'000'000), Catch::Contains("energy ledger"));
@@ -247,8 +248,8 @@ TEST_CASE("no sound tap is taken for one of too long a step") {
 
 TEST_CASE("spheres that start deep in each other end with a reason") {
   auto dynamics = grains({});
-  for (const double apart : {0.3, 0.95}) {
-    dynamics->load({WalledBox{4, 4}, {{2, 2, 1}, {2, 2, 1 + apart}}});
+  for (const double distance : {0.3, 0.95}) {
+    dynamics->load({WalledBox{4, 4}, {{2, 2, 1}, {2, 2, 1 + distance}}});
     CHECK_THROWS_WITH(dynamics->settle(RandomSettle{}), Catch::Contains("throw the bed apart"));
   }
   // A column of 800 presses its lowest sphere by their weight: no start is gentler.
@@ -256,9 +257,9 @@ TEST_CASE("spheres that start deep in each other end with a reason") {
   const double stiffness = reduced(engine).spheres.stiffness;
   Packing column{WalledBox{1.05, 1.05}, {}};
   double z = 0.5 - 800 / stiffness;
-  for (int above = 799; above >= 0; --above) {
+  for (int height = 799; height >= 0; --height) {
     column.centres.push_back({0.525, 0.525, z});
-    z += 1 - above / stiffness;
+    z += 1 - height / stiffness;
   }
   dynamics->load(column);
   CHECK_NOTHROW(dynamics->settle(RandomSettle{}));

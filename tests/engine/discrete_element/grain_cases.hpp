@@ -26,11 +26,12 @@ inline ReducedSettings settings(const ContactLaw& law, double gravity = 0, doubl
                                 const LightestMasses& lightest = {}) {
   DiscreteElement engine;
   engine.spheres = law;
-  ReducedSettings out = reduced(engine, lightest);
-  out.gravity = gravity;
-  out.time_step /= finer;
-  for (LawConstants* one : {&out.spheres, &out.floor, &out.sides}) one->time_step = out.time_step;
-  return out;
+  ReducedSettings settings = reduced(engine, lightest);
+  settings.gravity = gravity;
+  settings.time_step /= finer;
+  for (LawConstants* constants : {&settings.spheres, &settings.floor, &settings.sides})
+    constants->time_step = settings.time_step;
+  return settings;
 }
 
 inline GrainLoop loop_of(const Container& container, const ReducedSettings& settings,

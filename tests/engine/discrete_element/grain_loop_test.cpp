@@ -33,40 +33,40 @@ class BruteForce {
       for (std::uint32_t j = 0; j < n; ++j)
         if (i != j) add_pair(i, j);
     for (std::uint32_t i = 0; i < n; ++i) {
-      const GrainState& one = grains_[i];
-      add_side(i, 0, {0, 0, 1}, one.centre.z, settings_.floor);
-      add_side(i, 1, {1, 0, 0}, one.centre.x, settings_.sides);
-      add_side(i, 2, {-1, 0, 0}, box_.width_x - one.centre.x, settings_.sides);
-      add_side(i, 3, {0, 1, 0}, one.centre.y, settings_.sides);
-      add_side(i, 4, {0, -1, 0}, box_.width_y - one.centre.y, settings_.sides);
+      const GrainState& grain = grains_[i];
+      add_side(i, 0, {0, 0, 1}, grain.centre.z, settings_.floor);
+      add_side(i, 1, {1, 0, 0}, grain.centre.x, settings_.sides);
+      add_side(i, 2, {-1, 0, 0}, box_.width_x - grain.centre.x, settings_.sides);
+      add_side(i, 3, {0, 1, 0}, grain.centre.y, settings_.sides);
+      add_side(i, 4, {0, -1, 0}, box_.width_y - grain.centre.y, settings_.sides);
     }
     const double dt = settings_.time_step;
     for (std::size_t i = 0; i < n; ++i) {
-      GrainState& one = grains_[i];
-      one.velocity = one.velocity + Vec3{force_[i].x * dt, force_[i].y * dt, force_[i].z * dt};
-      one.spin = one.spin +
-                 Vec3{torque_[i].x * (10 * dt), torque_[i].y * (10 * dt), torque_[i].z * (10 * dt)};
-      one.centre = one.centre + dt * one.velocity;
+      GrainState& grain = grains_[i];
+      grain.velocity = grain.velocity + Vec3{force_[i].x * dt, force_[i].y * dt, force_[i].z * dt};
+      grain.spin = grain.spin + Vec3{torque_[i].x * (10 * dt), torque_[i].y * (10 * dt),
+                                     torque_[i].z * (10 * dt)};
+      grain.centre = grain.centre + dt * grain.velocity;
     }
   }
 
  private:
-  static Vector of(Vec3 a) { return {a.x, a.y, a.z}; }
+  static Vector vector_of(Vec3 a) { return {a.x, a.y, a.z}; }
 
   // The lower number is the first; each pair is computed once, and kept for the other.
   void add_pair(std::uint32_t i, std::uint32_t j) {
     const auto key = std::pair(std::min(i, j), std::max(i, j));
     if (i < j) {
       const GrainState &a = grains_[i], &b = grains_[j];
-      const Vector between = of(a.centre) - of(b.centre);
-      const double distance = std::sqrt(dot(between, between));
-      Meeting<double> at;
-      at.normal = scaled(1.0 / distance, between);
-      at.overlap = 1.0 - distance;
-      at.arm = scaled(0.5, between);
-      at.velocity = of(a.velocity) - of(b.velocity);
-      at.spin = of(a.spin) + of(b.spin);
-      acts_[key] = laws_[{i, j, 0}](at, settings_.spheres);
+      const Vector branch = vector_of(a.centre) - vector_of(b.centre);
+      const double distance = std::sqrt(dot(branch, branch));
+      Meeting<double> meeting;
+      meeting.normal = scaled(1.0 / distance, branch);
+      meeting.overlap = 1.0 - distance;
+      meeting.arm = scaled(0.5, branch);
+      meeting.velocity = vector_of(a.velocity) - vector_of(b.velocity);
+      meeting.spin = vector_of(a.spin) + vector_of(b.spin);
+      acts_[key] = laws_[{i, j, 0}](meeting, settings_.spheres);
     }
     const ContactAction<double>& act = acts_[key];
     force_[i] = i < j ? force_[i] + act.force : force_[i] - act.force;
@@ -75,13 +75,13 @@ class BruteForce {
 
   void add_side(std::uint32_t i, std::uint32_t side, Vector normal, double distance,
                 const LawConstants& constants) {
-    Meeting<double> at;
-    at.normal = normal;
-    at.overlap = 0.5 - distance;
-    at.arm = scaled(distance, normal);
-    at.velocity = of(grains_[i].velocity);
-    at.spin = of(grains_[i].spin);
-    const ContactAction<double> act = laws_[{i, i, 1 + side}](at, constants);
+    Meeting<double> meeting;
+    meeting.normal = normal;
+    meeting.overlap = 0.5 - distance;
+    meeting.arm = scaled(distance, normal);
+    meeting.velocity = vector_of(grains_[i].velocity);
+    meeting.spin = vector_of(grains_[i].spin);
+    const ContactAction<double> act = laws_[{i, i, 1 + side}](meeting, constants);
     force_[i] = force_[i] + act.force;
     torque_[i] = torque_[i] + act.torque;
   }
@@ -94,7 +94,7 @@ class BruteForce {
   std::map<std::pair<std::uint32_t, std::uint32_t>, ContactAction<double>> acts_;
 };
 
-bool same(const std::vector<GrainState>& a, const std::vector<GrainState>& b) {
+bool is_same(const std::vector<GrainState>& a, const std::vector<GrainState>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (!(a[i].centre == b[i].centre && a[i].velocity == b[i].velocity && a[i].spin == b[i].spin))
       return false;
@@ -118,13 +118,14 @@ double missing_of_tap(const PeriodicBox& box, std::uint32_t n, double fall, cons
     loop.run(static_cast<std::uint64_t>(time / units.time_step));
   };
   run(fall);
-  const Energies before = loop.energies();
+  const Energies energies_before = loop.energies();
   loop.begin_motion({0.4413, 7.5 * units.seconds, 1});
   run(6);
-  const Energies after = loop.energies();
-  const double dissipated = after.dissipated() - before.dissipated();
-  const double came = after.floor_work - before.floor_work + before.held() - after.held();
-  REQUIRE(after.floor_work > before.floor_work + n / 3);
+  const Energies energies_after = loop.energies();
+  const double dissipated = energies_after.dissipated() - energies_before.dissipated();
+  const double came = energies_after.floor_work - energies_before.floor_work +
+                      energies_before.held() - energies_after.held();
+  REQUIRE(energies_after.floor_work > energies_before.floor_work + n / 3);
   REQUIRE(dissipated > n / 3);
   return std::abs(came - dissipated) / dissipated;
 }
@@ -142,7 +143,7 @@ TEST_CASE("a bed falls between walls as by brute force, to the bit, on every ins
     CAPTURE(name(set));
     GrainLoop loop = loop_of(box, units, start, set);
     loop.run(steps);
-    CHECK(same(loop.state().grains, brute.grains()));
+    CHECK(is_same(loop.state().grains, brute.grains()));
     CHECK(loop.census().contacts > 1);
   }
 }
@@ -165,7 +166,7 @@ TEST_CASE("a bed continues from any step of a tap as if it had not been stopped"
         resumed.restore(saved);
         straight.run(static_cast<std::uint64_t>(steps));
         resumed.run(static_cast<std::uint64_t>(steps));
-        CHECK(same(resumed.state().grains, straight.state().grains));
+        CHECK(is_same(resumed.state().grains, straight.state().grains));
         CHECK(resumed.energies().friction == straight.energies().friction);
         CHECK(resumed.energies().latched == straight.energies().latched);
         CHECK(resumed.energies().floor_work == straight.energies().floor_work);
@@ -210,9 +211,9 @@ TEST_CASE("a sphere in the hollow of three stays there") {
   loop.run(50'000);
   const auto settled = loop.state().grains;
   loop.run(1'000'000);
-  const auto after = loop.state().grains;
-  for (int i = 0; i < 4; ++i) CHECK(length(after[i].centre - settled[i].centre) < 1e-4);
-  CHECK(after[3].centre.z > 0.5 + 0.9 * depth);
+  const auto state_after = loop.state().grains;
+  for (int i = 0; i < 4; ++i) CHECK(length(state_after[i].centre - settled[i].centre) < 1e-4);
+  CHECK(state_after[3].centre.z > 0.5 + 0.9 * depth);
 }
 
 TEST_CASE("a bed at rest stays as it is") {
@@ -221,12 +222,12 @@ TEST_CASE("a bed at rest stays as it is") {
   GrainLoop loop(box, units);
   loop.load(dilute_column(box, 200, 11));
   loop.run(120'000);
-  Packing before, after;
-  loop.store(before);
+  Packing packing_before, packing_after;
+  loop.store(packing_before);
   const double held = loop.energies().held();
   loop.run(200'000);
-  loop.store(after);
-  CHECK(std::abs(mean_height(after) - mean_height(before)) < 2e-5);
+  loop.store(packing_after);
+  CHECK(std::abs(mean_height(packing_after) - mean_height(packing_before)) < 2e-5);
   CHECK(loop.energies().held() <= held * (1 + 1e-9));
 }
 
@@ -251,10 +252,10 @@ TEST_CASE("a bed left alone for a million steps stays where it is", "[slow]") {
     GrainLoop loop(box, settings(WaltonBraun{.friction = friction}, 1));
     loop.load(dilute_column(box, 200, 11));
     loop.run(300'000);
-    const double before = mean_height_while_ringing(loop);
+    const double previous = mean_height_while_ringing(loop);
     const double held = loop.energies().held();
     loop.run(980'000);
-    CHECK(std::abs(mean_height_while_ringing(loop) - before) < 1e-6);
+    CHECK(std::abs(mean_height_while_ringing(loop) - previous) < 1e-6);
     CHECK(loop.energies().held() <= held);
   }
 }
@@ -264,7 +265,7 @@ TEST_CASE("without friction nothing spins") {
   GrainLoop loop(box, settings(WaltonBraun{.friction = 0}, 1));
   loop.load(dilute_column(box, 60, 2));
   loop.run(10'000);
-  for (const GrainState& one : loop.state().grains) CHECK(one.spin == Vec3{});
+  for (const GrainState& grain : loop.state().grains) CHECK(grain.spin == Vec3{});
   CHECK(loop.energies().friction == 0);
 }
 

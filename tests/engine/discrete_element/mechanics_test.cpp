@@ -24,16 +24,16 @@ struct Acting {
 };
 Acting acting(const BedMechanics& bed, std::uint32_t n, bool arm_is_radius) {
   Acting sum{std::vector<Vec3>(n, Vec3{0, 0, -1}), std::vector<Vec3>(n)};
-  for (const Contact& one : bed.contacts) {
-    const bool pair = one.second < n;
-    const Vec3 force = force_on_first(one);
-    const double half = pair ? 0.5 * (1 - one.overlap) : 0.5 - one.overlap;
-    const Vec3 torque = cross(force, (arm_is_radius ? 0.5 : half) * one.normal);
-    sum.force[one.first] = sum.force[one.first] + force;
-    sum.torque[one.first] = sum.torque[one.first] + torque;
+  for (const Contact& contact : bed.contacts) {
+    const bool pair = contact.second < n;
+    const Vec3 force = force_on_first(contact);
+    const double half = pair ? 0.5 * (1 - contact.overlap) : 0.5 - contact.overlap;
+    const Vec3 torque = cross(force, (arm_is_radius ? 0.5 : half) * contact.normal);
+    sum.force[contact.first] = sum.force[contact.first] + force;
+    sum.torque[contact.first] = sum.torque[contact.first] + torque;
     if (!pair) continue;
-    sum.force[one.second] = sum.force[one.second] - force;
-    sum.torque[one.second] = sum.torque[one.second] + torque;
+    sum.force[contact.second] = sum.force[contact.second] - force;
+    sum.torque[contact.second] = sum.torque[contact.second] + torque;
   }
   return sum;
 }
@@ -46,11 +46,11 @@ std::vector<GrainState> column_of(const Container& container, std::uint32_t n) {
 
 double largest(const std::vector<Vec3>& vectors) {
   double most = 0;
-  for (const Vec3& one : vectors) most = std::max(most, length(one));
+  for (const Vec3& vector : vectors) most = std::max(most, length(vector));
   return most;
 }
 
-bool same(const BedMechanics& a, const BedMechanics& b) {
+bool is_same(const BedMechanics& a, const BedMechanics& b) {
   return a.velocities == b.velocities && a.spins == b.spins && a.contacts == b.contacts;
 }
 
@@ -59,11 +59,11 @@ struct WallSums {
 };
 WallSums wall_sums(const BedMechanics& bed, std::uint32_t n) {
   WallSums sums;
-  for (const Contact& one : bed.contacts) {
-    if (one.second == n) sums.floor += one.normal_force;
-    if (one.second <= n) continue;
-    sums.side_normal += one.normal_force;
-    sums.side_friction += one.tangential_force.z;
+  for (const Contact& contact : bed.contacts) {
+    if (contact.second == n) sums.floor += contact.normal_force;
+    if (contact.second <= n) continue;
+    sums.side_normal += contact.normal_force;
+    sums.side_friction += contact.tangential_force.z;
   }
   return sums;
 }
@@ -79,38 +79,39 @@ TEST_CASE("contacts have the forces that the next step moves spheres by") {
                                   ContactLaw{WaltonBraun{.stiffness = 1e4, .friction = 0}},
                                   ContactLaw{LinearSpringDashpot{.stiffness = 1e4, .friction = 0}});
   const bool linear = std::holds_alternative<LinearSpringDashpot>(law);
-  const bool friction = std::visit([](const auto& one) { return one.friction; }, law) > 0;
+  const bool friction =
+      std::visit([](const auto& contact_law) { return contact_law.friction; }, law) > 0;
   constexpr std::uint32_t n = 60;
   const ReducedSettings units = settings(law, 1);
   GrainLoop loop = loop_of(container, units, column_of(container, n));
-  GrainLoop apart = loop_of(container, units, column_of(container, n), InstructionSet::baseline);
+  GrainLoop separate = loop_of(container, units, column_of(container, n), InstructionSet::baseline);
   for (const double time : {0.3, 10.0, 0.2}) {
     const auto steps = static_cast<std::uint64_t>(time / units.time_step);
     loop.run(steps);
-    apart.run(steps);
-    const std::vector<GrainState> before = loop.state().grains;
+    separate.run(steps);
+    const std::vector<GrainState> grains_before = loop.state().grains;
     const BedMechanics bed = loop.mechanics();
-    CHECK(same(bed, apart.mechanics()));
+    CHECK(is_same(bed, separate.mechanics()));
     const GrainLoop::State kept = loop.state();
     GrainLoop restored(container, units);
     restored.restore(kept);
-    CHECK(same(bed, restored.mechanics()));
+    CHECK(is_same(bed, restored.mechanics()));
 
     GrainLoop next = loop;
     next.run(1);
-    const std::vector<GrainState> after = next.state().grains;
+    const std::vector<GrainState> grains_after = next.state().grains;
     const Acting sums = acting(bed, n, linear);
     const double step = units.time_step;
     double force_error = 0, torque_error = 0, velocity_error = 0, spin_error = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
-      const Vec3 gained = (1 / step) * (after[i].velocity - before[i].velocity);
-      const Vec3 turned = (0.1 / step) * (after[i].spin - before[i].spin);
+      const Vec3 gained = (1 / step) * (grains_after[i].velocity - grains_before[i].velocity);
+      const Vec3 turned = (0.1 / step) * (grains_after[i].spin - grains_before[i].spin);
       force_error = std::max(force_error, length(gained - sums.force[i]));
       torque_error = std::max(torque_error, length(turned - sums.torque[i]));
-      const Vec3 middle = 0.5 * (after[i].velocity + before[i].velocity);
+      const Vec3 middle = 0.5 * (grains_after[i].velocity + grains_before[i].velocity);
       velocity_error = std::max(velocity_error, length(middle - bed.velocities[i]));
       if (!friction) continue;
-      const Vec3 mean_spin = 0.5 * (after[i].spin + before[i].spin);
+      const Vec3 mean_spin = 0.5 * (grains_after[i].spin + grains_before[i].spin);
       spin_error = std::max(spin_error, length(mean_spin - bed.spins[i]));
     }
     CAPTURE(container.index(), law.index(), time);
@@ -120,17 +121,20 @@ TEST_CASE("contacts have the forces that the next step moves spheres by") {
     CHECK(spin_error < 1e-13 * (1 + largest(bed.spins)));
     CHECK(bed.spins.size() == (friction ? n : 0));
     CHECK((time == 0.3 || !bed.contacts.empty()));
-    const bool sorted = std::ranges::is_sorted(
-        bed.contacts, {}, [](const Contact& one) { return std::tuple(one.first, one.second); });
+    const bool sorted = std::ranges::is_sorted(bed.contacts, {}, [](const Contact& contact) {
+      return std::tuple(contact.first, contact.second);
+    });
     CHECK(sorted);
-    for (const Contact& one : bed.contacts) {
-      CHECK(one.first < one.second);
-      CHECK(one.overlap > 0);
-      CHECK(std::abs(length(one.normal) - 1) < 1e-14);
-      CHECK(std::abs(dot(one.tangential_force, one.normal)) < 1e-9);
-      if (!friction) CHECK(one.tangential_force == Vec3{});
-      const double mu = std::visit([](const auto& some) { return some.friction; }, law);
-      CHECK(length(one.tangential_force) <= mu * std::abs(one.normal_force) * (1 + 1e-9) + 1e-9);
+    for (const Contact& contact : bed.contacts) {
+      CHECK(contact.first < contact.second);
+      CHECK(contact.overlap > 0);
+      CHECK(std::abs(length(contact.normal) - 1) < 1e-14);
+      CHECK(std::abs(dot(contact.tangential_force, contact.normal)) < 1e-9);
+      if (!friction) CHECK(contact.tangential_force == Vec3{});
+      const double mu =
+          std::visit([](const auto& contact_law) { return contact_law.friction; }, law);
+      CHECK(length(contact.tangential_force) <=
+            mu * std::abs(contact.normal_force) * (1 + 1e-9) + 1e-9);
     }
   }
 }
@@ -290,17 +294,17 @@ TEST_CASE("the share that slides is counted from the contacts' forces, without w
   const ContactLaw law =
       GENERATE(ContactLaw{WaltonBraun{.stiffness = 1e4}}, ContactLaw{WaltonBraun{.friction = 0}},
                ContactLaw{LinearSpringDashpot{.stiffness = 1e4}});
-  const double mu = std::visit([](const auto& one) { return one.friction; }, law);
+  const double mu = std::visit([](const auto& contact_law) { return contact_law.friction; }, law);
   constexpr std::uint32_t n = 60;
   const ReducedSettings units = settings(law, 1);
   const Container container = WalledBox{3.3, 4};
   GrainLoop loop = loop_of(container, units, column_of(container, n));
   loop.run(static_cast<std::uint64_t>(10 / units.time_step));
   double pairs = 0, sliding = 0;
-  for (const Contact& one : loop.mechanics().contacts) {
-    if (one.second >= n) continue;
+  for (const Contact& contact : loop.mechanics().contacts) {
+    if (contact.second >= n) continue;
     ++pairs;
-    if (mu > 0) sliding += length(one.tangential_force) > 0.999999 * mu * one.normal_force;
+    if (mu > 0) sliding += length(contact.tangential_force) > 0.999999 * mu * contact.normal_force;
   }
   REQUIRE(pairs > 20);
   CHECK((mu == 0 || (sliding > 0 && sliding < pairs)));

@@ -49,22 +49,22 @@ class BruteForce {
     for (std::size_t i = 0; i < n; ++i) {
       const double per_mass = 1 / sizes_.mass(i);
       const double kick = per_mass * dt, turn = per_mass * (2.5 * dt);
-      GrainState& one = grains_[i];
+      GrainState& grain = grains_[i];
       const Vec3 kicked = {force_[i].x * kick, force_[i].y * kick, force_[i].z * kick};
       const Vec3 turned = {torque_[i].x * turn, torque_[i].y * turn, torque_[i].z * turn};
-      one.velocity = one.velocity + kicked;
-      one.spin = one.spin + turned;
-      one.centre = one.centre + dt * one.velocity;
-      one.seen_velocity = one.velocity;
-      one.seen_spin = one.spin;
+      grain.velocity = grain.velocity + kicked;
+      grain.spin = grain.spin + turned;
+      grain.centre = grain.centre + dt * grain.velocity;
+      grain.seen_velocity = grain.velocity;
+      grain.seen_spin = grain.spin;
       if (!Law::sees_full_step) continue;
-      one.seen_velocity = one.velocity + 0.5 * kicked;
-      one.seen_spin = one.spin + 0.5 * turned;
+      grain.seen_velocity = grain.velocity + 0.5 * kicked;
+      grain.seen_spin = grain.spin + 0.5 * turned;
     }
   }
 
  private:
-  static Vector of(Vec3 a) { return {a.x, a.y, a.z}; }
+  static Vector vector_of(Vec3 a) { return {a.x, a.y, a.z}; }
 
   void add_pair(std::uint32_t i, std::uint32_t j) {
     const auto key = std::pair(std::min(i, j), std::max(i, j));
@@ -72,17 +72,17 @@ class BruteForce {
       const GrainState &a = grains_[i], &b = grains_[j];
       const double reach = sizes_.radius(i) + sizes_.radius(j);
       const double m = sizes_.mass(i), n = sizes_.mass(j);
-      const Vector between = of(a.centre) - of(b.centre);
-      const double distance = std::sqrt(dot(between, between));
-      SizedMeeting<double> at;
-      at.per_diameter = 1 / reach;
-      at.mass_root = std::sqrt(2 * m * n / (m + n));
-      at.normal = scaled(1.0 / distance, between);
-      at.overlap = reach - distance;
-      at.arm = Law::arm_is_radius ? at.normal : scaled(at.per_diameter, between);
-      at.velocity = of(a.seen_velocity) - of(b.seen_velocity);
-      at.spin = of(a.seen_spin) + of(b.seen_spin);
-      acts_[key] = laws_[{i, j, 0}](at, settings_.spheres);
+      const Vector branch = vector_of(a.centre) - vector_of(b.centre);
+      const double distance = std::sqrt(dot(branch, branch));
+      SizedMeeting<double> meeting;
+      meeting.per_diameter = 1 / reach;
+      meeting.mass_root = std::sqrt(2 * m * n / (m + n));
+      meeting.normal = scaled(1.0 / distance, branch);
+      meeting.overlap = reach - distance;
+      meeting.arm = Law::arm_is_radius ? meeting.normal : scaled(meeting.per_diameter, branch);
+      meeting.velocity = vector_of(a.seen_velocity) - vector_of(b.seen_velocity);
+      meeting.spin = vector_of(a.seen_spin) + vector_of(b.seen_spin);
+      acts_[key] = laws_[{i, j, 0}](meeting, settings_.spheres);
     }
     const ContactAction<double>& act = acts_[key];
     force_[i] = i < j ? force_[i] + act.force : force_[i] - act.force;
@@ -91,15 +91,16 @@ class BruteForce {
 
   void add_side(std::uint32_t i, std::uint32_t side, Vector normal, double distance,
                 const LawConstants& constants) {
-    SizedMeeting<double> at;
-    at.per_diameter = 0.5 / sizes_.radius(i);
-    at.mass_root = std::sqrt(sizes_.mass(i));
-    at.normal = normal;
-    at.overlap = sizes_.radius(i) - distance;
-    at.arm = Law::arm_is_radius ? normal : scaled((2.0 * at.per_diameter) * distance, normal);
-    at.velocity = of(grains_[i].seen_velocity);
-    at.spin = of(grains_[i].seen_spin);
-    const ContactAction<double> act = laws_[{i, i, 1 + side}](at, constants);
+    SizedMeeting<double> meeting;
+    meeting.per_diameter = 0.5 / sizes_.radius(i);
+    meeting.mass_root = std::sqrt(sizes_.mass(i));
+    meeting.normal = normal;
+    meeting.overlap = sizes_.radius(i) - distance;
+    meeting.arm =
+        Law::arm_is_radius ? normal : scaled((2.0 * meeting.per_diameter) * distance, normal);
+    meeting.velocity = vector_of(grains_[i].seen_velocity);
+    meeting.spin = vector_of(grains_[i].seen_spin);
+    const ContactAction<double> act = laws_[{i, i, 1 + side}](meeting, constants);
     force_[i] = force_[i] + act.force;
     torque_[i] = torque_[i] + act.torque;
   }

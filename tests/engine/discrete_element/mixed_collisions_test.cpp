@@ -24,7 +24,7 @@ const std::vector<Pair> pairs = {
     {{1, 0.5}, {1, 1}}, {{0.4, 4}, {1, 1}}, {{1.4, 1}, {0.5, 3}}, {{2, 2}, {1, 1}}};
 
 // No axis, nor a plane between axes; and across it.
-const Vec3 along = {2.0 / 3, 1.0 / 3, 2.0 / 3};
+const Vec3 direction = {2.0 / 3, 1.0 / 3, 2.0 / 3};
 const Vec3 across = {1 / std::numbers::sqrt2, 0, -1 / std::numbers::sqrt2};
 
 /// Two bodies: spheres, or one sphere and the floor, with what their closed forms need.
@@ -47,7 +47,7 @@ struct Relative {
 };
 
 Relative relative_of(const std::vector<GrainState>& grains, const Bodies& bodies) {
-  const Vec3 normal = bodies.on_floor ? Vec3{0, 0, 1} : -1.0 * along;
+  const Vec3 normal = bodies.on_floor ? Vec3{0, 0, 1} : -1.0 * direction;
   const Vec3 plane = bodies.on_floor ? Vec3{1, 0, 0} : across;
   Vec3 velocity = grains[0].velocity, scaled_spin = grains[0].spin;
   if (!bodies.on_floor) {
@@ -62,7 +62,7 @@ Relative relative_of(const std::vector<GrainState>& grains, const Bodies& bodies
 /// They meet at this speed, and slide on each other at another by their spins alone: their normal
 /// hardly turns.
 struct Impact {
-  Relative before, after;
+  Relative approach, departure;
 };
 Impact impact(const Bodies& bodies, const ContactLaw& law, double normal, double slip,
               double finer) {
@@ -75,9 +75,9 @@ Impact impact(const Bodies& bodies, const ContactLaw& law, double normal, double
   } else {
     // The second half of the slip by spins, one of which is larger.
     const double distance = bodies.radius(0) + bodies.radius(1) + gap;
-    const Vec3 turn = slip * cross(along, across);
-    grains = {grain({0.1, 0.1, 3}, normal * along, 0.7 * turn),
-              grain(Vec3{0.1, 0.1, 3} + distance * along, {}, 0.3 * turn)};
+    const Vec3 turn = slip * cross(direction, across);
+    grains = {grain({0.1, 0.1, 3}, normal * direction, 0.7 * turn),
+              grain(Vec3{0.1, 0.1, 3} + distance * direction, {}, 0.3 * turn)};
   }
   std::vector<double> diameters{bodies.pair.diameters[0]}, densities{bodies.pair.densities[0]};
   if (!bodies.on_floor) {
@@ -86,20 +86,20 @@ Impact impact(const Bodies& bodies, const ContactLaw& law, double normal, double
   }
   GrainLoop loop =
       loop_of(box, units, grains, best_instruction_set(), sizes_of(diameters, densities));
-  Impact out;
-  out.before = relative_of(loop.grains(), bodies);
+  Impact impact;
+  impact.approach = relative_of(loop.grains(), bodies);
   loop.run(static_cast<std::uint64_t>(1.2 * units.contact_time / units.time_step));
-  out.after = relative_of(loop.grains(), bodies);
-  return out;
+  impact.departure = relative_of(loop.grains(), bodies);
+  return impact;
 }
 
 std::vector<Bodies> all_bodies() {
-  std::vector<Bodies> out;
+  std::vector<Bodies> bodies;
   for (const Pair& pair : pairs) {
-    out.push_back({pair, false});
-    out.push_back({pair, true});
+    bodies.push_back({pair, false});
+    bodies.push_back({pair, true});
   }
-  return out;
+  return bodies;
 }
 
 }  // namespace
@@ -114,7 +114,7 @@ TEST_CASE("every pair of sizes, and each sphere on the floor, parts with the res
         CAPTURE(bodies.pair.diameters, bodies.pair.densities, bodies.on_floor, e, law.index());
         const double speed = 1e-3;
         const auto ratio = [&](double finer) {
-          return impact(bodies, law, speed, 0, finer).after.normal / speed;
+          return impact(bodies, law, speed, 0, finer).departure.normal / speed;
         };
         CHECK(std::abs(ratio(1) - e) < 5e-3);
         CHECK(std::abs(ratio(4) - e) < 1e-3);
@@ -135,15 +135,16 @@ TEST_CASE("an oblique impact of unequal spheres that slides has the impulses of 
       // Latched springs take up friction from zero anew while their normal turns: second order.
       const double e = law.index() == 0 ? 0.9 : 1, finer = law.index() == 0 ? 800 : 100;
       const Impact found = impact(bodies, law, normal, slip, finer);
-      REQUIRE(found.before.slip == Approx(slip).epsilon(1e-6));
+      REQUIRE(found.approach.slip == Approx(slip).epsilon(1e-6));
       const double m = bodies.reduced_mass(), rubbed = 0.1 * m * (1 + e) * normal;
-      const double lost = found.before.across - found.after.across;
-      const double slip_lost = found.before.slip - found.after.slip;
-      CHECK(std::abs(found.after.normal - e * normal) / normal < 1e-6);
+      const double lost = found.approach.across - found.departure.across;
+      const double slip_lost = found.approach.slip - found.departure.slip;
+      CHECK(std::abs(found.departure.normal - e * normal) / normal < 1e-6);
       CHECK(std::abs(lost - rubbed / m) / normal < 1e-6);
       CHECK(std::abs(slip_lost - 3.5 * rubbed / m) / normal < 2e-6);
       const double turned = 2.5 * rubbed / (bodies.mass(0) * bodies.radius(0));
-      const double at_rim = bodies.radius(0) * (found.after.spin - found.before.spin - turned);
+      const double at_rim =
+          bodies.radius(0) * (found.departure.spin - found.approach.spin - turned);
       CHECK(std::abs(at_rim) / normal < 2e-6);
     }
   }
@@ -158,11 +159,11 @@ TEST_CASE("an elastic oblique impact of unequal spheres that sticks turns the sl
     const LinearSpringDashpot law{.restitution = 1, .friction = 5};
     const Impact found = impact(bodies, law, normal, slip, finer);
     const double m = bodies.reduced_mass(), impulse = 2.0 / 3.5 * m * slip;
-    CHECK(std::abs(found.after.normal - normal) / normal < 1e-6);
-    CHECK(std::abs(found.after.slip + slip) / normal < 2e-6);
-    CHECK(std::abs(found.before.across - found.after.across - impulse / m) / normal < 1e-6);
+    CHECK(std::abs(found.departure.normal - normal) / normal < 1e-6);
+    CHECK(std::abs(found.departure.slip + slip) / normal < 2e-6);
+    CHECK(std::abs(found.approach.across - found.departure.across - impulse / m) / normal < 1e-6);
     const double turned = 2.5 * impulse / (bodies.mass(0) * bodies.radius(0));
-    const double at_rim = bodies.radius(0) * (found.after.spin - found.before.spin - turned);
+    const double at_rim = bodies.radius(0) * (found.departure.spin - found.approach.spin - turned);
     CHECK(std::abs(at_rim) / normal < 2e-6);
   }
 }
@@ -183,22 +184,22 @@ TEST_CASE("an impact of unequal spheres keeps momentum and angular momentum to r
       Vec3 momentum, angular;
       const auto grains = loop.state().grains;
       for (int i = 0; i < 2; ++i) {
-        const GrainState& one = grains[i];
+        const GrainState& grain = grains[i];
         const double m = bodies.mass(i);
-        momentum = momentum + m * one.velocity;
-        angular =
-            angular + m * cross(one.centre, one.velocity) + 0.4 * m * bodies.radius(i) * one.spin;
+        momentum = momentum + m * grain.velocity;
+        angular = angular + m * cross(grain.centre, grain.velocity) +
+                  0.4 * m * bodies.radius(i) * grain.spin;
       }
       return std::pair(momentum, angular);
     };
-    const auto before = sums();
+    const auto state_before = sums();
     const double energy = loop.kinetic_energy(), scale = bodies.mass(0) + bodies.mass(1);
     run_contact(loop, units);
-    const auto after = sums();
+    const auto state_after = sums();
     CAPTURE(pair.diameters, pair.densities);
     REQUIRE(loop.kinetic_energy() < 0.999 * energy);
-    CHECK(length(after.first - before.first) < 1e-13 * scale);
-    CHECK(length(after.second - before.second) < 1e-11 * scale);
+    CHECK(length(state_after.first - state_before.first) < 1e-13 * scale);
+    CHECK(length(state_after.second - state_before.second) < 1e-11 * scale);
   }
 }
 
@@ -214,15 +215,15 @@ TEST_CASE("the tangential force of unequal spheres turns with a pair that turns 
                          .time_step = 1};
   WaltonBraunLaw<double, true> contact{};
   contact.tangential = {1, 0, 0};
-  SizedMeeting<double> at;
-  at.normal = {0, 0, 1};
-  at.overlap = 0.002;
-  at.per_diameter = 1 / (a + b);
-  at.mass_root = 1;
-  at.arm = {0, 0, 1};
-  at.velocity = {0, 0, 0};
-  at.spin = {0, 0, (a + b) * turn};
-  for (int k = 0; k < 1571; ++k) contact(at, law);
+  SizedMeeting<double> meeting;
+  meeting.normal = {0, 0, 1};
+  meeting.overlap = 0.002;
+  meeting.per_diameter = 1 / (a + b);
+  meeting.mass_root = 1;
+  meeting.arm = {0, 0, 1};
+  meeting.velocity = {0, 0, 0};
+  meeting.spin = {0, 0, (a + b) * turn};
+  for (int k = 0; k < 1571; ++k) contact(meeting, law);
   CHECK(std::abs(contact.tangential.x - std::cos(1.571)) < 2e-3);
   CHECK(std::abs(contact.tangential.y - std::sin(1.571)) < 2e-3);
 }

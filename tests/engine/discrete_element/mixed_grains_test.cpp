@@ -18,7 +18,7 @@ const std::vector<ContactLaw> laws = {WaltonBraun{.friction = 0.3}, WaltonBraun{
                                       LinearSpringDashpot{.friction = 0.3},
                                       LinearSpringDashpot{.friction = 0}};
 
-bool same(const std::vector<GrainState>& a, const std::vector<GrainState>& b, double spins = 1) {
+bool is_same(const std::vector<GrainState>& a, const std::vector<GrainState>& b, double spins = 1) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (!(a[i].centre == b[i].centre && a[i].velocity == b[i].velocity &&
           spins * a[i].spin == b[i].spin && a[i].seen_velocity == b[i].seen_velocity &&
@@ -45,50 +45,53 @@ struct Acting {
 };
 
 // Weights and contacts, by Newton and Euler.
-Acting acting_on(const Packing& at, const BedMechanics& bed, bool radius_arm) {
-  const auto n = static_cast<std::uint32_t>(at.centres.size());
+Acting acting_on(const Packing& packing, const BedMechanics& bed, bool radius_arm) {
+  const auto n = static_cast<std::uint32_t>(packing.centres.size());
   Acting sum{{}, std::vector<Vec3>(n)};
-  for (std::uint32_t i = 0; i < n; ++i) sum.force.push_back({0, 0, -at.mass(i)});
-  for (const Contact& one : bed.contacts) {
-    const bool pair = one.second < n;
-    const Vec3 acting = one.normal_force * one.normal + one.tangential_force;
-    const double reach = at.radius(one.first) + (pair ? at.radius(one.second) : 0);
-    const double share = radius_arm ? 1 : (reach - one.overlap) / reach;
+  for (std::uint32_t i = 0; i < n; ++i) sum.force.push_back({0, 0, -packing.mass(i)});
+  for (const Contact& contact : bed.contacts) {
+    const bool pair = contact.second < n;
+    const Vec3 acting = contact.normal_force * contact.normal + contact.tangential_force;
+    const double reach =
+        packing.radius(contact.first) + (pair ? packing.radius(contact.second) : 0);
+    const double share = radius_arm ? 1 : (reach - contact.overlap) / reach;
     const auto torque = [&](std::uint32_t i) {
-      return cross(acting, at.radius(i) * share * one.normal);
+      return cross(acting, packing.radius(i) * share * contact.normal);
     };
-    sum.force[one.first] = sum.force[one.first] + acting;
-    sum.torque[one.first] = sum.torque[one.first] + torque(one.first);
+    sum.force[contact.first] = sum.force[contact.first] + acting;
+    sum.torque[contact.first] = sum.torque[contact.first] + torque(contact.first);
     sum.greatest = std::max(sum.greatest, length(acting));
     if (!pair) continue;
-    sum.force[one.second] = sum.force[one.second] - acting;
-    sum.torque[one.second] = sum.torque[one.second] + torque(one.second);
+    sum.force[contact.second] = sum.force[contact.second] - acting;
+    sum.torque[contact.second] = sum.torque[contact.second] + torque(contact.second);
   }
   return sum;
 }
 
 // How many pairs touch, by all pairs and images; all that do are among the contacts, or have a
 // latched spring without force.
-int count_touching(const Packing& at, const BedMechanics& bed, const std::vector<KeptPair>& kept) {
-  const Boundary boundary(at.container);
+int count_touching(const Packing& packing, const BedMechanics& bed,
+                   const std::vector<KeptPair>& kept) {
+  const Boundary boundary(packing.container);
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> latched;
-  for (const KeptPair& one : kept) latched[{one.first, one.second}] = one.history[0];
+  for (const KeptPair& pair : kept) latched[{pair.first, pair.second}] = pair.history[0];
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> found;
-  for (const Contact& one : bed.contacts) found[{one.first, one.second}] = one.overlap;
-  const auto n = static_cast<std::uint32_t>(at.centres.size());
+  for (const Contact& contact : bed.contacts)
+    found[{contact.first, contact.second}] = contact.overlap;
+  const auto n = static_cast<std::uint32_t>(packing.centres.size());
   int touching = 0;
   for (std::uint32_t i = 0; i < n; ++i) {
     for (std::uint32_t j = i + 1; j < n; ++j) {
-      const Vec3 between = separation(boundary, at.centres[i], at.centres[j]);
-      const double overlap = at.radius(i) + at.radius(j) - length(between);
+      const Vec3 branch = separation(boundary, packing.centres[i], packing.centres[j]);
+      const double overlap = packing.radius(i) + packing.radius(j) - length(branch);
       if (!(overlap > 1e-12)) continue;
-      const auto one = found.find({i, j});
-      if (one == found.end()) {
+      const auto found_pair = found.find({i, j});
+      if (found_pair == found.end()) {
         CHECK(overlap < latched[{i, j}]);
         continue;
       }
       ++touching;
-      CHECK(one->second == Approx(overlap).margin(1e-12));
+      CHECK(found_pair->second == Approx(overlap).margin(1e-12));
     }
   }
   return touching;
@@ -116,7 +119,7 @@ TEST_CASE("grains with sizes of diameter 1 move as equal ones, bit for bit") {
         loop.run(6000);
         loop.begin_motion({0.4, 0.35, 1});
         loop.run(4000);
-        CHECK(same(expected.state().grains, loop.state().grains, 0.5));
+        CHECK(is_same(expected.state().grains, loop.state().grains, 0.5));
         CHECK(loop.greatest_overlap() == expected.greatest_overlap());
         CHECK(loop.census().mean_overlap == expected.census().mean_overlap);
         CHECK(loop.census().contacts == expected.census().contacts);
@@ -152,7 +155,7 @@ TEST_CASE("a mixture continues from any step of a tap as if it had not been stop
         resumed.restore(saved);
         straight.run(steps);
         resumed.run(steps);
-        CHECK(same(resumed.state().grains, straight.state().grains));
+        CHECK(is_same(resumed.state().grains, straight.state().grains));
         CHECK(resumed.energies().friction == straight.energies().friction);
         CHECK(resumed.energies().latched == straight.energies().latched);
         CHECK(resumed.energies().floor_work == straight.energies().floor_work);
@@ -183,25 +186,27 @@ TEST_CASE("contacts of a mixture are all pairs that touch, with the forces of th
     loop.run(steps_of(time, units));
     CAPTURE(container.index(), law.index(), time);
     const BedMechanics bed = loop.mechanics();
-    Packing at;
-    loop.store(at);
-    REQUIRE(at.sizes == start.sizes);
-    touching += count_touching(at, bed, loop.state().pairs);
-    const Acting sums = acting_on(at, bed, std::holds_alternative<LinearSpringDashpot>(law));
-    const auto before = loop.grains();
+    Packing packing;
+    loop.store(packing);
+    REQUIRE(packing.sizes == start.sizes);
+    touching += count_touching(packing, bed, loop.state().pairs);
+    const Acting sums = acting_on(packing, bed, std::holds_alternative<LinearSpringDashpot>(law));
+    const auto state_before = loop.grains();
     loop.run(1);
-    const auto after = loop.grains();
+    const auto state_after = loop.grains();
     double force_error = 0, torque_error = 0, velocity_error = 0, spin_error = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
-      const double m = at.mass(i), r = at.radius(i);
-      const Vec3 gained = (m / units.time_step) * (after[i].velocity - before[i].velocity);
-      const Vec3 turned = (0.4 * m * r / units.time_step) * (after[i].spin - before[i].spin);
+      const double m = packing.mass(i), r = packing.radius(i);
+      const Vec3 gained =
+          (m / units.time_step) * (state_after[i].velocity - state_before[i].velocity);
+      const Vec3 turned =
+          (0.4 * m * r / units.time_step) * (state_after[i].spin - state_before[i].spin);
       force_error = std::max(force_error, length(gained - sums.force[i]));
       torque_error = std::max(torque_error, length(turned - sums.torque[i]));
-      const Vec3 middle = 0.5 * (after[i].velocity + before[i].velocity);
+      const Vec3 middle = 0.5 * (state_after[i].velocity + state_before[i].velocity);
       velocity_error = std::max(velocity_error, length(middle - bed.velocities[i]));
       if (bed.spins.empty()) continue;
-      const Vec3 mean_spin = (0.5 / r) * (after[i].spin + before[i].spin);
+      const Vec3 mean_spin = (0.5 / r) * (state_after[i].spin + state_before[i].spin);
       spin_error = std::max(spin_error, length(mean_spin - bed.spins[i]));
     }
     CHECK(force_error < 1e-8 * sums.greatest);
@@ -219,13 +224,14 @@ TEST_CASE("the ledger of a mixture's tap closes, and better as the step shrinks"
     const ReducedSettings units = settings_for(law, start, finer);
     GrainLoop loop = loop_for(start, units);
     loop.run(steps_of(10, units));
-    const Energies before = loop.energies();
+    const Energies energies_before = loop.energies();
     loop.begin_motion({0.4413, 7.5 * units.seconds, 1});
     loop.run(steps_of(6, units));
-    const Energies after = loop.energies();
-    const double dissipated = after.dissipated() - before.dissipated();
-    const double came = after.floor_work - before.floor_work + before.held() - after.held();
-    REQUIRE(after.floor_work > before.floor_work + loop.mass() / 4);
+    const Energies energies_after = loop.energies();
+    const double dissipated = energies_after.dissipated() - energies_before.dissipated();
+    const double came = energies_after.floor_work - energies_before.floor_work +
+                        energies_before.held() - energies_after.held();
+    REQUIRE(energies_after.floor_work > energies_before.floor_work + loop.mass() / 4);
     REQUIRE(dissipated > loop.mass() / 4);
     return std::abs(came - dissipated) / dissipated;
   };
@@ -258,14 +264,14 @@ TEST_CASE("an overlap is judged by the smaller of two spheres") {
 
 TEST_CASE("a loop of grains takes beds of its own sizes alone") {
   const Packing bed = mixed_column(PeriodicBox{6.2, 6.4}, 20, 0.6, 5, 9, 3);
-  Packing other = bed, equal = bed;
-  other.sizes = std::make_shared<const Sizes>(std::vector<double>(20, 1.2));
+  Packing changed = bed, equal = bed;
+  changed.sizes = std::make_shared<const Sizes>(std::vector<double>(20, 1.2));
   equal.sizes = nullptr;
   GrainLoop loop = loop_for(bed, settings_for(WaltonBraun{}, bed));
-  CHECK_THROWS_AS(loop.load(other), std::invalid_argument);
+  CHECK_THROWS_AS(loop.load(changed), std::invalid_argument);
   CHECK_THROWS_AS(loop.load(equal), std::invalid_argument);
-  other.sizes = std::make_shared<const Sizes>(*bed.sizes);
-  CHECK_NOTHROW(loop.load(other));
+  changed.sizes = std::make_shared<const Sizes>(*bed.sizes);
+  CHECK_NOTHROW(loop.load(changed));
 }
 
 // From a pour by steepest descent, tapped by a floor that moves and by a lift: stopped within the
@@ -294,16 +300,16 @@ TEST_CASE("dynamics of a mixture settle, tap and go on from their bytes") {
     resumed->load(halfway);
     resumed->restore(bytes);
     CHECK(resumed->save() == bytes);
-    for (const auto& one : {straight.get(), resumed.get()})
-      while (one->advance(1'000'000) == DynamicsStatus::running) {
+    for (const auto& single : {straight.get(), resumed.get()})
+      while (single->advance(1'000'000) == DynamicsStatus::running) {
       }
     Packing first, second;
     straight->store(first);
     resumed->store(second);
     CHECK(first.centres == second.centres);
-    const auto values = straight->diagnostics(), others = resumed->diagnostics();
+    const auto values = straight->diagnostics(), remaining = resumed->diagnostics();
     REQUIRE(values.size() == columns(EngineSettings{engine}).size());
-    for (std::size_t k = 0; k < values.size(); ++k) CHECK(values[k] == others[k]);
+    for (std::size_t k = 0; k < values.size(); ++k) CHECK(values[k] == remaining[k]);
     CHECK(values[3] > 0);               // input_energy
     CHECK(std::abs(values[6]) < 5e-3);  // ledger_error
     CHECK(deepest_overlap(first).depth < 0.05);

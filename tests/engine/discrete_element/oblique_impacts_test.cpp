@@ -25,16 +25,17 @@ Oblique oblique(const ContactLaw& law, double normal, double tangential, double 
       grain({5, 5, (pair ? 6 : 0.5) + gap}, {tangential, 0, -normal})};
   if (pair) grains.push_back(grain({5, 5, 5}));
   GrainLoop loop = loop_of(box, units, grains);
-  Oblique out{-normal, tangential, 0, 0};
+  Oblique impact{-normal, tangential, 0, 0};
   const double steps = 4 * units.contact_time / units.time_step;
   for (int k = 0; k < steps; ++k) {
     loop.run(1);
-    const auto after = loop.grains();
-    const Vec3 velocity = pair ? after[0].velocity - after[1].velocity : after[0].velocity;
-    const double pressed = out.pressed + std::abs(velocity.z - out.normal);
-    out = {velocity.z, velocity.x, after[0].spin.y, pressed};
+    const auto state_after = loop.grains();
+    const Vec3 velocity =
+        pair ? state_after[0].velocity - state_after[1].velocity : state_after[0].velocity;
+    const double pressed = impact.pressed + std::abs(velocity.z - impact.normal);
+    impact = {velocity.z, velocity.x, state_after[0].spin.y, pressed};
   }
-  return out;
+  return impact;
 }
 
 }  // namespace
@@ -52,20 +53,20 @@ TEST_CASE("an oblique impact that slides throughout has the impulses of rigid sp
         for (const bool pair : {false, true}) {
           for (const double finer : {1.0, 4.0}) {
             CAPTURE(law.index(), e, mu, pair, finer);
-            const Oblique after = oblique(law, normal, tangential, finer, pair);
-            const double lost = tangential - after.tangential, share = pair ? 2.5 : 5;
+            const Oblique state_after = oblique(law, normal, tangential, finer, pair);
+            const double lost = tangential - state_after.tangential, share = pair ? 2.5 : 5;
             // Strong dashpots are off by more: their force begins and ends with a jump.
             const double in_e = law.index() == 1 && e < 0.9 ? 2 : 1;
-            CHECK(std::abs(after.normal / normal - e) < in_e * (finer > 1 ? 1e-3 : 5e-3));
+            CHECK(std::abs(state_after.normal / normal - e) < in_e * (finer > 1 ? 1e-3 : 5e-3));
             // Coulomb's law, of the normal impulse as it is.
-            CHECK(lost == Approx(mu * after.pressed).epsilon(1e-3));
-            CHECK(after.spin == Approx(share * mu * after.pressed).epsilon(1e-3));
+            CHECK(lost == Approx(mu * state_after.pressed).epsilon(1e-3));
+            CHECK(state_after.spin == Approx(share * mu * state_after.pressed).epsilon(1e-3));
             // The damped spring pulls at the end of the contact: there friction goes by the force's
             // size, and the impulse is no longer (1 + e) v_n. At e = 0.9 that is 2e-3 of it.
             if (finer == 1 || (law.index() == 1 && e < 0.98)) continue;
             const double rigid = mu * (1 + e) * normal;
             CHECK(lost == Approx(rigid).epsilon(1e-3));
-            CHECK(after.spin == Approx(share * rigid).epsilon(1e-3));
+            CHECK(state_after.spin == Approx(share * rigid).epsilon(1e-3));
           }
         }
       }
@@ -85,9 +86,9 @@ TEST_CASE("no grazing impact gains energy") {
         GrainLoop loop = loop_of(box, units,
                                  {grain({5, 5, 0.5 + 0.3 * normal * units.time_step},
                                         {2 * std::sin(angle), 0, -normal})});
-        const double before = loop.kinetic_energy();
+        const double previous = loop.kinetic_energy();
         run_contact(loop, units);
-        CHECK(loop.kinetic_energy() < before * (1 + 2e-3));
+        CHECK(loop.kinetic_energy() < previous * (1 + 2e-3));
       }
     }
   }
@@ -107,9 +108,9 @@ TEST_CASE("no grazing impact on springs and dashpots gains energy, nor one of tw
         GrainLoop floor = loop_of(box, units, {grain({5, 5, 0.5 + gap}, velocity)});
         GrainLoop pair = loop_of(box, units, {grain({5, 5, 6 + gap}, velocity), grain({5, 5, 5})});
         for (GrainLoop* loop : {&floor, &pair}) {
-          const double before = loop->kinetic_energy();
+          const double previous = loop->kinetic_energy();
           run_contact(*loop, units);
-          CHECK(loop->kinetic_energy() < before);
+          CHECK(loop->kinetic_energy() < previous);
         }
       }
     }
@@ -128,9 +129,9 @@ TEST_CASE("no grazing impact on elastic springs gains more than the error of the
         CAPTURE(degrees, mu, k);
         const double gap = k / double(phases) * speed * std::cos(angle) * units.time_step;
         GrainLoop loop = loop_of(box, units, {grain({5, 5, 0.5 + gap}, velocity)});
-        const double before = loop.kinetic_energy();
+        const double previous = loop.kinetic_energy();
         run_contact(loop, units);
-        CHECK(loop.kinetic_energy() < before * (1 + 1e-4));
+        CHECK(loop.kinetic_energy() < previous * (1 + 1e-4));
       }
     }
   }
@@ -164,11 +165,12 @@ TEST_CASE("two spheres of opposite spin part as mirror images, none made to slid
       CHECK(rubbed[0].spin.y < spin);
       // Contacts that slide throughout still slide in one direction; sticking ones swing back by
       // less.
-      const double before = -spin;  // velocity of the upper surface along x, less that of the lower
-      const double after =
+      const double previous =
+          -spin;  // velocity of the upper surface along x, less that of the lower
+      const double following =
           rubbed[0].velocity.x - rubbed[1].velocity.x - 0.5 * (rubbed[0].spin.y + rubbed[1].spin.y);
-      CHECK(std::abs(after) < std::abs(before));
-      if (spin >= 10) CHECK(after * before > 0);  // 3.5 mu (1 + e) v_n = 2
+      CHECK(std::abs(following) < std::abs(previous));
+      if (spin >= 10) CHECK(following * previous > 0);  // 3.5 mu (1 + e) v_n = 2
     }
   }
 }
@@ -205,38 +207,38 @@ TEST_CASE("half the step makes half the error of an impact that sticks") {
 // each step detected a reversal by chance, such impacts would differ by 1e-2 at any step.
 TEST_CASE("oblique impacts of spinning spheres converge to one result as the step is refined") {
   RandomStream random(stream_key(20261125, 0, 0, Purpose::start));
-  const auto between = [&](double low, double high) {
+  const auto interval = [&](double low, double high) {
     return low + (high - low) * random.uniform();
   };
-  const Vec3 along = {2.0 / 3, 1.0 / 3, 2.0 / 3}, middle = {10, 10, 10};
+  const Vec3 direction = {2.0 / 3, 1.0 / 3, 2.0 / 3}, middle = {10, 10, 10};
   for (const double mu : {0.1, 0.3, 0.5}) {
     double coarse = 0, fine = 0, finest = 0;
     constexpr int impacts = 24;
     for (int k = 0; k < impacts; ++k) {
-      const double normal = 0.5, begins = between(0.1, 0.9);
-      const double slip = std::exp(between(-2.7, 0.7)) * 3.5 * mu * 1.9 * normal;
-      const double angle = between(0, 2 * std::numbers::pi);
+      const double normal = 0.5, begins = interval(0.1, 0.9);
+      const double slip = std::exp(interval(-2.7, 0.7)) * 3.5 * mu * 1.9 * normal;
+      const double angle = interval(0, 2 * std::numbers::pi);
       const auto any_spin = [&] {
-        return 4 * slip * Vec3{between(-1, 1), between(-1, 1), between(-5, 5)};
+        return 4 * slip * Vec3{interval(-1, 1), interval(-1, 1), interval(-5, 5)};
       };
       const Vec3 velocity = {slip * std::cos(angle), slip * std::sin(angle), -normal};
       const Vec3 spin = any_spin(), other_spin = any_spin();
-      const auto after = [&](double finer) {
+      const auto state_after = [&](double finer) {
         const ReducedSettings units = settings(WaltonBraun{.friction = mu}, 0, finer);
         const double gap = begins * normal * units.time_step;
-        const GrainState above = grain({5, 5, 0.5 + gap}, velocity, spin);
+        const GrainState upper = grain({5, 5, 0.5 + gap}, velocity, spin);
         // Equal speed along the line of centres, for any speed across it.
-        const Vec3 meets = velocity - (dot(velocity, along) + normal) * along;
-        const GrainState second = grain(middle + (1 + gap) * along, meets, spin);
-        GrainLoop loop = k % 2 == 0 ? loop_of(box, units, {above})
+        const Vec3 meets = velocity - (dot(velocity, direction) + normal) * direction;
+        const GrainState second = grain(middle + (1 + gap) * direction, meets, spin);
+        GrainLoop loop = k % 2 == 0 ? loop_of(box, units, {upper})
                                     : loop_of(box, units, {grain(middle, {}, other_spin), second});
         run_contact(loop, units);
         const auto grains = loop.state().grains;
         return std::pair(grains.back().velocity, grains.back().spin);
       };
-      const auto exact = after(512);
+      const auto exact = state_after(512);
       const auto error = [&](double finer) {
-        const auto [v, w] = after(finer);
+        const auto [v, w] = state_after(finer);
         return (norm_squared(v - exact.first) + 0.1 * norm_squared(w - exact.second)) /
                (normal * normal);
       };

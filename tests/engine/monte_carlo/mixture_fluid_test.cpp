@@ -122,8 +122,8 @@ class AllPairsFluid {
   void run(std::uint64_t sweeps) {
     for (std::uint64_t trial = 0; trial < 2 * n_ * sweeps; ++trial) {
       const auto i = static_cast<std::uint32_t>(numbers_() % (2 * n_));
-      const Vec3 to = centres_[i] + 0.6 * Vec3{step(), step(), step()};
-      if (is_free(i, to)) centres_[i] = to;
+      const Vec3 end = centres_[i] + 0.6 * Vec3{step(), step(), step()};
+      if (is_free(i, end)) centres_[i] = end;
     }
   }
 
@@ -149,13 +149,14 @@ class AllPairsFluid {
   }
   double squared(Vec3 a, Vec3 b) const {
     Vec3 way = a - b;
-    for (double* along : {&way.x, &way.y, &way.z}) *along -= side_ * std::rint(*along / side_);
+    for (double* longitudinal : {&way.x, &way.y, &way.z})
+      *longitudinal -= side_ * std::rint(*longitudinal / side_);
     return norm_squared(way);
   }
-  bool is_free(std::uint32_t i, Vec3 to) const {
+  bool is_free(std::uint32_t i, Vec3 end) const {
     for (std::uint32_t j = 0; j < 2 * n_; ++j) {
       const double least = touching(i, j);
-      if (j != i && squared(to, centres_[j]) < least * least) return false;
+      if (j != i && squared(end, centres_[j]) < least * least) return false;
     }
     return true;
   }
@@ -218,12 +219,12 @@ void check_against_twin(double ratio, double fraction, std::uint32_t n_of_each, 
                         double most_error) {
   TwoSizeFluid fluid(ratio, fraction, n_of_each, 1970);
   AllPairsFluid twin(fluid.packing(), ratio, n_of_each);
-  const Estimate own = measure(fluid, configurations), other = measure(twin, configurations);
+  const Estimate own = measure(fluid, configurations), second = measure(twin, configurations);
   for (int k = 0; k < 3; ++k) {
-    const double error = std::hypot(own.error[k], other.error[k]);
-    CAPTURE(ratio, fraction, k, own.value[k], own.error[k], other.value[k], other.error[k]);
-    CHECK(error < most_error * other.value[k]);
-    CHECK(std::abs(own.value[k] - other.value[k]) <= 3 * error);
+    const double error = std::hypot(own.error[k], second.error[k]);
+    CAPTURE(ratio, fraction, k, own.value[k], own.error[k], second.value[k], second.error[k]);
+    CHECK(error < most_error * second.value[k]);
+    CHECK(std::abs(own.value[k] - second.value[k]) <= 3 * error);
   }
 }
 

@@ -37,7 +37,7 @@ Packing with_diameters(Packing packing, double diameter) {
   return packing;
 }
 
-Packing after(TrialLoop& loop, Packing packing, std::uint64_t trials) {
+Packing packing_after(TrialLoop& loop, Packing packing, std::uint64_t trials) {
   loop.load(packing);
   loop.begin_tap();
   loop.run(trials);
@@ -59,11 +59,11 @@ TEST_CASE("sizes of diameter 1 give the centres of equal spheres, bit for bit") 
       if (!possible(move, container)) continue;
       CAPTURE(container.index(), move.index());
       const auto equal = make_trial_loop(container, move, key);
-      const Packing expected = after(*equal, start, 60'000);
+      const Packing expected = packing_after(*equal, start, 60'000);
       for (const InstructionSet set : instruction_sets()) {
         for (const Packing& forced : {with_diameters(start, 1), start}) {
           const auto loop = loop_for_sizes(container, move, set);
-          CHECK(after(*loop, forced, 60'000).centres == expected.centres);
+          CHECK(packing_after(*loop, forced, 60'000).centres == expected.centres);
           CHECK(loop->state() == equal->state());
           CHECK(loop->tally().accepted == equal->tally().accepted);
           CHECK(loop->mean_height() == Approx(equal->mean_height()).epsilon(1e-12));
@@ -115,7 +115,7 @@ TEST_CASE("a mixture keeps to the plain loop where spheres wander behind their c
     PlainLoop plain(start, move, key);
     plain.run(150'000);
     const auto loop = loop_for_sizes(container, move);
-    CHECK(after(*loop, start, 150'000).centres == plain.packing().centres);
+    CHECK(packing_after(*loop, start, 150'000).centres == plain.packing().centres);
     if (!has_gravity(container)) CHECK(loop->tally().list_renewals > 100);
     CHECK(loop->tally().accepted * 6 < 150'000);
   }
@@ -143,9 +143,9 @@ TEST_CASE("all lengths doubled, a mixture has doubled centres, bit for bit") {
       if (auto* metropolis = std::get_if<MetropolisMove>(&large)) metropolis->beta /= 16;
       const auto loop = loop_for_sizes(container, small[k]);
       const auto large_loop = loop_for_sizes(doubled.container, large);
-      std::vector<Vec3> expected = after(*loop, start, 60'000).centres;
+      std::vector<Vec3> expected = packing_after(*loop, start, 60'000).centres;
       for (Vec3& r : expected) r = 2.0 * r;
-      CHECK(after(*large_loop, doubled, 60'000).centres == expected);
+      CHECK(packing_after(*large_loop, doubled, 60'000).centres == expected);
       CHECK(loop->tally().accepted == large_loop->tally().accepted);
     }
   }
@@ -157,7 +157,7 @@ TEST_CASE("eight spheres of ten diameters move among small ones") {
   const Packing start = random_mixture(PeriodicBox{21, 22}, diameters, 40, 5);
   for (const Move& move : {Move{PolarMove{0.4}}, Move{MetropolisMove{0.3, 0.01}}}) {
     const auto loop = loop_for_sizes(start.container, move);
-    Packing end = after(*loop, start, 600'000);
+    Packing end = packing_after(*loop, start, 600'000);
     CHECK(deepest_overlap_brute_force(end).depth == 0);
     CHECK(loop->tally().list_renewals > 1000);
     // A loop that begins from this state continues alike.
@@ -227,7 +227,7 @@ TEST_CASE("two masses in a dilute gas have each its own exponential profile") {
 TEST_CASE("the mean height of a mixture is weighted by volume while it relaxes") {
   const Packing start = random_mixture(PeriodicBox{7, 7}, graded_diameters(40, 0.5, 4), 9, 3);
   const auto loop = loop_for_sizes(start.container, PolarMove{});
-  const Packing end = after(*loop, start, 20'000);
+  const Packing end = packing_after(*loop, start, 20'000);
   CHECK(loop->mean_height() == mean_height(end));
   CHECK(loop->kind_heights().empty());
   CHECK(loop->solids_fraction({0, 3}) == solids_fraction(end, {0, 3}));
@@ -276,8 +276,8 @@ TEST_CASE("a mixture that is tapped continues bit for bit from what it saved") {
   const auto resumed = make_dynamics(settings, streams);
   resumed->load(middle);
   resumed->restore(straight->save());
-  for (Dynamics* const one : {straight.get(), resumed.get()})
-    while (one->advance(1'000'000) == DynamicsStatus::running) continue;
+  for (Dynamics* const dynamics : {straight.get(), resumed.get()})
+    while (dynamics->advance(1'000'000) == DynamicsStatus::running) continue;
   straight->store(end);
   resumed->store(resumed_end);
   CHECK(end.centres == resumed_end.centres);

@@ -32,14 +32,14 @@ TEST_CASE("the mean-height rule stops at the first small relative change") {
 
   // By hand, on a second loop.
   const auto twin = loaded(start);
-  double before = twin->mean_height(), now = 0;
+  double previous = twin->mean_height(), now = 0;
   std::uint64_t trials = 0;
   for (;;) {
     twin->run(50 * 40);
     trials += 50 * 40;
     now = twin->mean_height();
-    if (std::abs(now - before) / before < 1e-3) break;
-    before = now;
+    if (std::abs(now - previous) / previous < 1e-3) break;
+    previous = now;
   }
   CHECK(progress.trials == trials);
   CHECK(progress.last_value == now);
@@ -54,14 +54,14 @@ TEST_CASE("the absolute rule stops at the first small change in diameters") {
   REQUIRE(progress.status == DynamicsStatus::settled);
 
   const auto twin = loaded(start);
-  double before = twin->mean_height(), now = 0;
+  double previous = twin->mean_height(), now = 0;
   std::uint64_t trials = 0;
   for (;;) {
     twin->run(50 * 40);
     trials += 50 * 40;
     now = twin->mean_height();
-    if (std::abs(now - before) < 4e-3) break;
-    before = now;
+    if (std::abs(now - previous) < 4e-3) break;
+    previous = now;
   }
   CHECK(progress.trials == trials);
   CHECK(progress.last_value == now);

@@ -18,9 +18,9 @@ Vec3 pushed_out(const Box& box, const std::vector<Vec3>& bed, Vec3 p) {
     bool overlapped = false;
     for (const Vec3& centre : bed) {
       if (std::abs(centre.z - p.z) >= 1) continue;
-      const Vec3 apart = separation(box, p, centre);
-      if (norm_squared(apart) >= 1) continue;
-      p = wrapped(box, p + (1 / std::sqrt(norm_squared(apart)) - 1) * apart);
+      const Vec3 offset = separation(box, p, centre);
+      if (norm_squared(offset) >= 1) continue;
+      p = wrapped(box, p + (1 / std::sqrt(norm_squared(offset)) - 1) * offset);
       overlapped = true;
     }
     p.z = std::max(p.z, sphere_radius);
@@ -62,12 +62,12 @@ double agreement(const Box& box) {
   int agreed = 0, drops = 0;
   while (bed.centres().size() < n) {
     const double share_x = random.uniform(), share_y = random.uniform();
-    const auto from = bed.above(share_x, share_y);
-    if (!from) continue;
-    const auto rest = descend(bed, *from);
+    const auto start = bed.drop_point_of_shares(share_x, share_y);
+    if (!start) continue;
+    const auto rest = descend(bed, *start);
     REQUIRE(rest);
-    const Vec3 apart = separation(box, *rest, creep_down(box, bed.centres(), *from));
-    agreed += norm_squared(apart) < near * near ? 1 : 0;
+    const Vec3 offset = separation(box, *rest, creep_down(box, bed.centres(), *start));
+    agreed += norm_squared(offset) < near * near ? 1 : 0;
     ++drops;
     bed.add(*rest);
   }

@@ -7,9 +7,9 @@
 namespace jostle {
 namespace {
 
-Packing fitted(const Container& container, std::uint32_t n, Packing* before = nullptr) {
+Packing fitted(const Container& container, std::uint32_t n, Packing* poured = nullptr) {
   RandomStream random(stream_key(1, 0, 0, Purpose::start));
-  return make_start(FittedPour{}, container, n, random, {}, before);
+  return make_start(FittedPour{}, container, n, random, {}, poured);
 }
 
 }  // namespace
@@ -28,25 +28,25 @@ TEST_CASE("A fitted pour lies between its walls and is the same from the same st
 TEST_CASE("A fitted pour moves only the spheres that straddle a wall, and these come to rest") {
   constexpr std::uint32_t n = 600;
   const WalledBox box{8, 7};
-  Packing before;
-  const Packing after = fitted(box, n, &before);
+  Packing poured;
+  const Packing packing_after = fitted(box, n, &poured);
   // The first stage is a pour with periodic sides, from the same stream.
   RandomStream random(stream_key(1, 0, 0, Purpose::start));
   const Packing periodic = make_start(SteepestDescentPour{}, PeriodicBox{8, 7}, n, random);
-  CHECK(before.container == periodic.container);
-  CHECK(before.centres == periodic.centres);
+  CHECK(poured.container == periodic.container);
+  CHECK(poured.centres == periodic.centres);
 
   std::size_t moved = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 r = before.centres[i];
+    const Vec3 r = poured.centres[i];
     const bool straddles =
         r.x < 0.5 || r.y < 0.5 || r.x > box.width_x - 0.5 || r.y > box.width_y - 0.5;
     CAPTURE(i, r.x, r.y, r.z);
-    CHECK((after.centres[i] == r) == !straddles);
+    CHECK((packing_after.centres[i] == r) == !straddles);
     if (!straddles) continue;
     ++moved;
-    const bool on_floor = after.centres[i].z == sphere_radius;
-    CHECK((on_floor || carried(contacts(after, i))));
+    const bool on_floor = packing_after.centres[i].z == sphere_radius;
+    CHECK((on_floor || carried(contacts(packing_after, i))));
   }
   // A quarter of the footprint is nearer than R to a side: 1 - (7 x 6)/(8 x 7).
   CHECK(moved > n / 8);

@@ -43,9 +43,9 @@ std::size_t unsupported(const Packing& packing) {
 
 Vec3 rest_from(PourBed& bed, std::uint32_t sphere, double x, double y) {
   bed.next(sphere);
-  const auto from = bed.over(x, y);
-  REQUIRE(from);
-  const auto rest = descend(bed, *from);
+  const auto start = bed.drop_point(x, y);
+  REQUIRE(start);
+  const auto rest = descend(bed, *start);
   REQUIRE(rest);
   return *rest;
 }
@@ -89,20 +89,20 @@ TEST_CASE("Spheres of several sizes come to rest where a brute-force descent doe
       for (const std::uint32_t sphere : pour_sequence(spheres, random)) {
         const double radius = spheres.sizes->radius(sphere);
         bed.next(sphere);
-        std::optional<Vec3> from;
-        while (!from) {
+        std::optional<Vec3> start;
+        while (!start) {
           const double share_x = random.uniform(), share_y = random.uniform();
-          from = bed.above(share_x, share_y);
+          start = bed.drop_point_of_shares(share_x, share_y);
         }
-        const auto rest = descend(bed, *from);
+        const auto rest = descend(bed, *start);
         REQUIRE(rest);
-        const Packing others{container, bed.centres(),
-                             in_bed.empty() ? nullptr : std::make_shared<const Sizes>(in_bed)};
-        if (const auto twin = SteepestDescentTwin(others, radius).rest(*from)) {
-          const Vec3 apart = separation(Boundary(container), *rest, *twin);
+        const Packing obstacles{container, bed.centres(),
+                                in_bed.empty() ? nullptr : std::make_shared<const Sizes>(in_bed)};
+        if (const auto twin = SteepestDescentTwin(obstacles, radius).rest(*start)) {
+          const Vec3 offset = separation(Boundary(container), *rest, *twin);
           CAPTURE(ratio, container.index(), in_bed.size(), rest->x, rest->y, rest->z, twin->x,
                   twin->y, twin->z);
-          CHECK(std::sqrt(norm_squared(apart)) < 1e-9);
+          CHECK(std::sqrt(norm_squared(offset)) < 1e-9);
           ++compared;
         }
         bed.add(*rest);
@@ -124,9 +124,9 @@ TEST_CASE("A large sphere that rolls off a small one lands beside it") {
     bed.add({20, 20, small});
     const Vec3 rest = rest_from(bed, 1, 20.03, 20.04);
     CHECK(rest.z == Approx(large).epsilon(1e-14));
-    const double dx = rest.x - 20, dy = rest.y - 20, aside = std::sqrt(dx * dx + dy * dy);
-    CHECK(aside == Approx(2 * std::sqrt(large * small)).epsilon(1e-12));
-    CHECK(dx / aside == Approx(0.6).epsilon(1e-9));
+    const double dx = rest.x - 20, dy = rest.y - 20, lateral = std::sqrt(dx * dx + dy * dy);
+    CHECK(lateral == Approx(2 * std::sqrt(large * small)).epsilon(1e-12));
+    CHECK(dx / lateral == Approx(0.6).epsilon(1e-9));
   }
 }
 
@@ -183,7 +183,7 @@ TEST_CASE("Small beds of any sizes, narrow and degenerate ones too, are poured w
   for (std::uint64_t seed = 0; seed < 250; ++seed) {
     RandomStream random(stream_key(seed, 0, 0, Purpose::sizes));
     const double least = 0.2 + 0.8 * random.uniform(), ratio = 1 + 9 * random.uniform();
-    const bool two = random.below(2) == 0;
+    const bool two = random.integer_below(2) == 0;
     std::vector<double> diameters;
     for (int i = 0; i < 60; ++i) {
       const double u = random.uniform();
@@ -191,14 +191,15 @@ TEST_CASE("Small beds of any sizes, narrow and degenerate ones too, are poured w
     }
     const double largest = *std::ranges::max_element(diameters);
     // Every other container is as narrow as its largest sphere, or half a diameter wider.
-    const double width = largest * (seed % 2 == 0 ? 1 + 2 * random.uniform()
-                                                  : 1 + 0.5 * static_cast<double>(random.below(3)));
+    const double width =
+        largest * (seed % 2 == 0 ? 1 + 2 * random.uniform()
+                                 : 1 + 0.5 * static_cast<double>(random.integer_below(3)));
     const Container container = seed % 3 == 0
                                     ? Container{PeriodicBox{width + 1.001 * largest, 2.5 * largest}}
                                 : seed % 3 == 1 ? Container{WalledBox{width, 2.2 * largest}}
                                                 : Container{Cylinder{width}};
     CAPTURE(seed, container.index(), width, largest);
-    const auto order = static_cast<PourOrder>(random.below(4));
+    const auto order = static_cast<PourOrder>(random.integer_below(4));
     const Packing packing = poured(container, with_diameters(diameters, order), seed);
     CHECK(deepest_overlap_brute_force(packing).depth <= 1e-12);
   }

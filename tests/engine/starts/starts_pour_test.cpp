@@ -59,10 +59,10 @@ void check_within_3_errors(const Moments& run, double reference, double referenc
 // The spheres that arrived before this one and lie within the touch tolerance of it.
 std::size_t earlier_contacts(const Packing& packing, std::size_t sphere) {
   std::size_t count = 0;
-  for (std::size_t other = 0; other < sphere; ++other) {
-    const Vec3 apart = separation(std::get<PeriodicBox>(packing.container), packing.centres[sphere],
-                                  packing.centres[other]);
-    if (norm_squared(apart) < (1 + touch_tolerance) * (1 + touch_tolerance)) ++count;
+  for (std::size_t neighbour = 0; neighbour < sphere; ++neighbour) {
+    const Vec3 offset = separation(std::get<PeriodicBox>(packing.container),
+                                   packing.centres[sphere], packing.centres[neighbour]);
+    if (norm_squared(offset) < (1 + touch_tolerance) * (1 + touch_tolerance)) ++count;
   }
   return count;
 }

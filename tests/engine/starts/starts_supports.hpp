@@ -17,14 +17,14 @@ inline constexpr double touch_tolerance = 1e-6;  // diameters
 inline std::vector<Vec3> contacts(const Packing& packing, std::size_t sphere) {
   std::vector<Vec3> found;
   const Vec3 r = packing.centres[sphere];
-  for (std::size_t other = 0; other < packing.centres.size(); ++other) {
-    if (other == sphere) continue;
-    const Vec3 apart =
-        std::visit([&](const auto& box) { return separation(box, r, packing.centres[other]); },
+  for (std::size_t neighbour = 0; neighbour < packing.centres.size(); ++neighbour) {
+    if (neighbour == sphere) continue;
+    const Vec3 offset =
+        std::visit([&](const auto& box) { return separation(box, r, packing.centres[neighbour]); },
                    packing.container);
-    const double length = std::sqrt(norm_squared(apart));
-    if (length < packing.radius(sphere) + packing.radius(other) + touch_tolerance)
-      found.push_back((1 / length) * apart);
+    const double length = std::sqrt(norm_squared(offset));
+    if (length < packing.radius(sphere) + packing.radius(neighbour) + touch_tolerance)
+      found.push_back((1 / length) * offset);
   }
   const Boundary boundary(packing.container);
   const double reach = packing.radius(sphere) + touch_tolerance;

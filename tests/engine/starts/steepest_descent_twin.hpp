@@ -50,11 +50,11 @@ class SteepestDescentTwin {
       if (active.size() == 3) return into_periods(boundary_, on_constraints(active, p));
       const Vec3 m = motion(active, p);
       if (norm_squared(m) < 1e-24) return std::nullopt;
-      const Vec3 from = p;
+      const Vec3 start = p;
       p = advanced(p, active, std::max(0.9 * room, 2e-3));
       // Beside a tube a path may have a lowest point.
       if (active == active_set(active, p) && dot(m, motion(active, p)) <= 0)
-        return into_periods(boundary_, lowest(from, p, active));
+        return into_periods(boundary_, lowest(start, p, active));
       // Into the box: images reach one period beyond it.
       p = into_periods(boundary_, p);
     }
@@ -63,19 +63,19 @@ class SteepestDescentTwin {
  private:
   static constexpr double contact = 1e-9, overlap = -1e-11, faultless = 1e-11;
   struct Ball {
-    Vec3 at;
+    Vec3 anchor;
     double reach;
   };
 
   std::size_t size() const { return balls_.size() + faces_.size(); }
   double gap(std::size_t c, Vec3 p) const {
-    if (c < balls_.size()) return std::sqrt(norm_squared(p - balls_[c].at)) - balls_[c].reach;
+    if (c < balls_.size()) return std::sqrt(norm_squared(p - balls_[c].anchor)) - balls_[c].reach;
     return faces_[c - balls_.size()].distance(p) - radius_;
   }
   Vec3 normal(std::size_t c, Vec3 p) const {
     if (c >= balls_.size()) return faces_[c - balls_.size()].normal(p);
-    const Vec3 away = p - balls_[c].at;
-    return (1 / std::sqrt(norm_squared(away))) * away;
+    const Vec3 displacement = p - balls_[c].anchor;
+    return (1 / std::sqrt(norm_squared(displacement))) * displacement;
   }
 
   /// Gaussian elimination with pivoting of a symmetric system of up to 3 equations; false where it
@@ -170,27 +170,27 @@ class SteepestDescentTwin {
     return true;
   }
   /// Where the motion changes its sign on the path of the active constraints.
-  Vec3 lowest(Vec3 from, Vec3 to, const std::vector<std::size_t>& active) const {
-    const Vec3 m = motion(active, from);
+  Vec3 lowest(Vec3 start, Vec3 end, const std::vector<std::size_t>& active) const {
+    const Vec3 m = motion(active, start);
     for (int i = 0; i < 60; ++i) {
-      const Vec3 middle = on_constraints(active, 0.5 * (from + to));
-      (dot(m, motion(active, middle)) > 0 ? from : to) = middle;
+      const Vec3 middle = on_constraints(active, 0.5 * (start + end));
+      (dot(m, motion(active, middle)) > 0 ? start : end) = middle;
     }
-    return from;
+    return start;
   }
   /// A step of the length along the motion, or up to where something is met or lost.
   Vec3 advanced(Vec3 p, const std::vector<std::size_t>& active, double length) const {
     const Vec3 m = motion(active, p);
-    const Vec3 along = (1 / std::sqrt(norm_squared(m))) * m;
-    const auto at = [&](double s) { return on_constraints(active, p + s * along); };
-    const Vec3 next = at(length);
+    const Vec3 direction = (1 / std::sqrt(norm_squared(m))) * m;
+    const auto point_at = [&](double s) { return on_constraints(active, p + s * direction); };
+    const Vec3 next = point_at(length);
     if (allowed(active, next)) return next;
     double low = 0, high = length;
     for (int i = 0; i < 50; ++i) {
       const double middle = 0.5 * (low + high);
-      (allowed(active, at(middle)) ? low : high) = middle;
+      (allowed(active, point_at(middle)) ? low : high) = middle;
     }
-    return at(high);
+    return point_at(high);
   }
 
   Boundary boundary_;

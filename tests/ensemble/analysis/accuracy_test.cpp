@@ -23,27 +23,27 @@ TEST_CASE("A bias is the mean of the pairs' differences") {
 }
 
 TEST_CASE("Without two pairs there is no error, and equal differences need no others") {
-  const std::vector<double> one = {1}, other = {3};
-  CHECK(paired_bias(one, other).bias == -2);
-  CHECK(std::isnan(paired_bias(one, other).error));
+  const std::vector<double> first = {1}, second = {3};
+  CHECK(paired_bias(first, second).bias == -2);
+  CHECK(std::isnan(paired_bias(first, second).error));
   const std::vector<double> a = {1, 2}, b = {2, 3};
   CHECK(std::isinf(paired_bias(a, b).variance_reduction));
 }
 
 TEST_CASE("A growth is the change of the pairs' differences, judged by Student's t") {
-  const std::vector<double> before{1, 2, 4}, reference_before{0.5, 1.5, 3.5}, after{1.5, 2.5, 5},
-      reference{0.5, 1.6, 3.4};
-  const Growth growth = bias_growth(before, reference_before, after, reference);
+  const std::vector<double> previous{1, 2, 4}, reference_before{0.5, 1.5, 3.5},
+      final_values{1.5, 2.5, 5}, reference{0.5, 1.6, 3.4};
+  const Growth growth = bias_growth(previous, reference_before, final_values, reference);
   // Differences of 0.5 each before; of 1, 0.9 and 1.6 after.
   CHECK(growth.change.bias == Approx(2.0 / 3));
   CHECK(growth.change.pairs == 3);
   CHECK(growth.detectable == Approx(smallest_effect_found(0.05, 2) * growth.change.error));
   CHECK(growth.is_seen() == (growth.change.bias > 4.302653 * growth.change.error));
-  const std::vector<double> one{1}, other{2};
-  CHECK_FALSE(bias_growth(one, one, other, one).is_seen());
-  CHECK(std::isnan(bias_growth(one, one, other, one).detectable));
+  const std::vector<double> first{1}, second{2};
+  CHECK_FALSE(bias_growth(first, first, second, first).is_seen());
+  CHECK(std::isnan(bias_growth(first, first, second, first).detectable));
   // The reference against itself.
-  CHECK_FALSE(bias_growth(before, before, after, after).is_seen());
+  CHECK_FALSE(bias_growth(previous, previous, final_values, final_values).is_seen());
 }
 
 TEST_CASE("A bias that does not grow is called growing one time in twenty, with any replicates") {
@@ -75,15 +75,18 @@ TEST_CASE("A bias that does not grow is called growing one time in twenty, with 
 
 TEST_CASE("The bias of a geometric ladder is the rest of the series") {
   // 1 - 2^-k at k = 1, 2, 3: to 1 are missing 1/8.
-  const auto of = [](std::vector<double> two_before, std::vector<double> before,
-                     std::vector<double> last) { return remainder(two_before, before, last); };
-  CHECK(of({0.5, 1.5}, {0.75, 1.75}, {0.875, 1.875}).value == Approx(0.125));
-  CHECK(of({0.5, 1.5}, {0.75, 1.75}, {0.875, 1.875}).error == 0);
-  CHECK(std::isnan(of({0}, {1}, {2}).value));    // steps that do not shrink
-  CHECK(std::isnan(of({0}, {1}, {0.5}).value));  // steps of changing sign
-  CHECK(std::isnan(of({}, {}, {}).value));
+  const auto remainder_of = [](std::vector<double> two_before, std::vector<double> previous,
+                               std::vector<double> last) {
+    return remainder(two_before, previous, last);
+  };
+  CHECK(remainder_of({0.5, 1.5}, {0.75, 1.75}, {0.875, 1.875}).value == Approx(0.125));
+  CHECK(remainder_of({0.5, 1.5}, {0.75, 1.75}, {0.875, 1.875}).error == 0);
+  CHECK(std::isnan(remainder_of({0}, {1}, {2}).value));    // steps that do not shrink
+  CHECK(std::isnan(remainder_of({0}, {1}, {0.5}).value));  // steps of changing sign
+  CHECK(std::isnan(remainder_of({}, {}, {}).value));
   const double missing = std::numeric_limits<double>::quiet_NaN();
-  CHECK(of({0.5, 9, 1.5}, {0.75, missing, 1.75}, {0.875, 9, 1.875}).value == Approx(0.125));
+  CHECK(remainder_of({0.5, 9, 1.5}, {0.75, missing, 1.75}, {0.875, 9, 1.875}).value ==
+        Approx(0.125));
 }
 
 TEST_CASE("The error of a ladder's bias is its deviation between ensembles") {
@@ -92,14 +95,14 @@ TEST_CASE("The error of a ladder's bias is its deviation between ensembles") {
   constexpr int n = 40, repetitions = 400;
   Moments values, errors;
   for (int k = 0; k < repetitions; ++k) {
-    std::vector<double> two_before, before, last;
+    std::vector<double> two_before, previous, last;
     for (int r = 0; r < n; ++r) {
       const double bed = 10 * scatter();
       two_before.push_back(bed + scatter());
-      before.push_back(bed + 0.5 + scatter());
+      previous.push_back(bed + 0.5 + scatter());
       last.push_back(bed + 0.7 + scatter());
     }
-    const Remainder found = remainder(two_before, before, last);
+    const Remainder found = remainder(two_before, previous, last);
     values.add(found.value);
     errors.add(found.error);
   }
@@ -152,15 +155,16 @@ namespace {
 struct MadeLadder {
   double roughest = 0.01, ratio = 0.45;        // largest ratio of biases, from stop to stop
   double beds = 0.001, noise_of_a_tap = 5e-4;  // deviations
-  static constexpr std::size_t before = 3, reference = 4, own = 2;
+  static constexpr std::size_t previous = 3, reference = 4, own = 2;
 
   double bias(std::size_t setting) const {
     constexpr double like_stop[] = {0, 1, 2, 3, 4, 1, 3, 2, 2, 2.5, 1.8};
     return -roughest * std::pow(ratio, like_stop[setting]);
   }
   static double seconds(std::size_t setting) {
-    constexpr double of[] = {0.12, 0.3, 0.55, 0.85, 1.37, 0.29, 0.91, 0.51, 0.63, 0.7, 1.1};
-    return of[setting];
+    constexpr double remainder_of[] = {0.12, 0.3,  0.55, 0.85, 1.37, 0.29,
+                                       0.91, 0.51, 0.63, 0.7,  1.1};
+    return remainder_of[setting];
   }
   static constexpr std::size_t n_settings = 11;
 };
@@ -186,8 +190,8 @@ std::vector<SettingCost> limits_of_a_pilot(const MadeLadder& made, std::size_t r
                         .pairs = replicates});
   }
   const Pilot pilot{.reference = made.reference,
-                    .last_step = paired_bias(values[made.reference], values[made.before]),
-                    .step_before = paired_bias(values[made.before], values[made.own]),
+                    .last_step = paired_bias(values[made.reference], values[made.previous]),
+                    .step_before = paired_bias(values[made.previous], values[made.own]),
                     .has_beds = std::vector<std::uint64_t>(made.n_settings, 1)};
   pool_sigma(settings, pilot);
   return at_limits(settings, pilot);

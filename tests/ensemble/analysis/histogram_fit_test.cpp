@@ -32,20 +32,20 @@ double exponential(RandomStream& random) {
 
 // The large pores of a packing of 9000: about 900 above v = 0.15, in bins of 0.02 in xi.
 // `draw`: their volumes beyond 0.15, in v0.
-Sample pore_sample(double v0, const std::function<double(RandomStream&)>& draw, int together = 1) {
+Sample pore_sample(double v0, const std::function<double(RandomStream&)>& draw, int n_pooled = 1) {
   constexpr double width = 0.02;
   constexpr std::size_t first = 27;  // its middle is the first above 0.15^(1/3)
-  const double from = std::pow(first * width, 3);
+  const double low = std::pow(first * width, 3);
   Sample sample{"pore tail, v0", make_model("pore_tail"), {0, v0}, 1, {}, {}};
   for (std::size_t k = first; k < 75; ++k) {
     sample.bins.push_back({std::pow(k * width, 3), std::pow((k + 1) * width, 3)});
   }
   sample.packing = [=](RandomStream& random, std::vector<double>& counts) {
-    const int n = static_cast<int>((900 + 30 * noise(random)) / together);
+    const int n = static_cast<int>((900 + 30 * noise(random)) / n_pooled);
     for (int i = 0; i < n; ++i) {
-      const double v = from + v0 * draw(random);
+      const double v = low + v0 * draw(random);
       const auto k = static_cast<std::size_t>(std::cbrt(v) / width);
-      if (k < 75) counts[k - first] += together;
+      if (k < 75) counts[k - first] += n_pooled;
     }
   };
   return sample;
@@ -67,8 +67,8 @@ Sample face_sample(std::size_t parameter) {
   }
   sample.packing = [up_to](RandomStream& random, std::vector<double>& counts) {
     for (int i = 0; i < 1500; ++i) {
-      const auto at = std::ranges::lower_bound(up_to, up_to.back() * random.uniform());
-      counts[static_cast<std::size_t>(at - up_to.begin())] += 1;
+      const auto found = std::ranges::lower_bound(up_to, up_to.back() * random.uniform());
+      counts[static_cast<std::size_t>(found - up_to.begin())] += 1;
     }
   };
   return sample;
@@ -124,7 +124,7 @@ double least_squares(const Sample& sample, const Histogram& histogram) {
 }
 
 struct Calibration {
-  Moments before, after;
+  Moments moments_before, moments_after;
   int held_68 = 0, held_95 = 0, refuted_5 = 0, refuted_1 = 0;
 };
 
@@ -138,15 +138,15 @@ Calibration calibrate(const Sample& sample, std::uint32_t realizations, int ense
     const HistogramFit fit = fit_histogram(*sample.law, histogram);
     INFO(sample.name << ", " << realizations << " realizations: " << fit.status);
     REQUIRE(std::isfinite(fit.values[sample.parameter]));
-    found.after.add(fit.values[sample.parameter]);
-    if (with_before) found.before.add(least_squares(sample, histogram));
+    found.moments_after.add(fit.values[sample.parameter]);
+    if (with_before) found.moments_before.add(least_squares(sample, histogram));
     found.refuted_5 += fit.p < 0.05;
     found.refuted_1 += fit.p < 0.01;
     if (realizations < 2) continue;
-    const double off = std::abs(fit.values[sample.parameter] - truth);
+    const double deviation = std::abs(fit.values[sample.parameter] - truth);
     const double error = fit.errors[sample.parameter];
-    found.held_68 += off <= student_half_width(error, realizations);
-    found.held_95 += off <= student_half_width(error, realizations, 0.95);
+    found.held_68 += deviation <= student_half_width(error, realizations);
+    found.held_95 += deviation <= student_half_width(error, realizations, 0.95);
   }
   return found;
 }
@@ -156,8 +156,8 @@ std::string row(const Sample& sample, std::uint32_t m, int n, const Calibration&
   const auto percent = [&](int count) { return 100.0 * count / n; };
   const auto bias = [&](const Moments& moments) { return 100 * (moments.mean() / truth - 1); };
   return fmt::format("{:16} {:3} {:10.2f} {:10.2f} +- {:.2f} {:7.1f} {:6.1f} {:7.1f} {:6.1f}\n",
-                     sample.name, m, bias(found.before), bias(found.after),
-                     100 * found.after.standard_error() / truth, percent(found.held_68),
+                     sample.name, m, bias(found.moments_before), bias(found.moments_after),
+                     100 * found.moments_after.standard_error() / truth, percent(found.held_68),
                      percent(found.held_95), percent(found.refuted_5), percent(found.refuted_1));
 }
 
@@ -182,7 +182,8 @@ void check_calibration(std::uint32_t m, int n, std::uint64_t seed, std::string& 
     // k of few cells is itself biased by about 3 k / n, 0.2 % of 1500 cells.
     const double own_bias =
         sample.parameter == 2 && sample.law->name() == "k_gamma" ? 3 * truth / (1500.0 * m) : 0;
-    CHECK(std::abs(found.after.mean() - truth - own_bias) <= 3 * found.after.standard_error());
+    CHECK(std::abs(found.moments_after.mean() - truth - own_bias) <=
+          3 * found.moments_after.standard_error());
     CHECK(agrees(found.refuted_5, n, 0.05));
     if (m < 2) continue;
     CHECK(agrees(found.held_68, n, interval_levels[0]));
@@ -230,8 +231,8 @@ TEST_CASE("A tail that is not exponential is refuted", "[statistics]") {
     CAPTURE(m, found.refuted_1);
     CHECK(found.refuted_1 >= n - 2);
   }
-  const HistogramFit one = fit_histogram(*sample.law, draw(sample, 4, 1));
-  CHECK(one.status.find("the law does not hold: F test over") == 0);
+  const HistogramFit fitted = fit_histogram(*sample.law, draw(sample, 4, 1));
+  CHECK(fitted.status.find("the law does not hold: F test over") == 0);
 }
 
 TEST_CASE("Counts that limit no law give none, with a reason") {

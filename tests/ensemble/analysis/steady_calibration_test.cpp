@@ -46,11 +46,11 @@ Counts calibrated(const Setting& setting, std::size_t ensembles) {
     for (std::size_t r = 0; r < setting.realizations; ++r) {
       ensemble.push_back(synthetic::autoregressive(setting.rho, setting.n_taps, 20261122 + e, r));
     }
-    const SteadyState steady = judged(ensemble, 0), one = judged(ensemble, sigma);
+    const SteadyState steady = judged(ensemble, 0), state = judged(ensemble, sigma);
     counts.false_alarms += steady.verdict() == Verdict::not_reached;
     counts.reached += steady.verdict() == Verdict::reached;
-    counts.found_1 += one.verdict() == Verdict::not_reached;
-    counts.reached_1 += one.verdict() == Verdict::reached;
+    counts.found_1 += state.verdict() == Verdict::not_reached;
+    counts.reached_1 += state.verdict() == Verdict::reached;
     if (steady.trend.tests == 0) continue;
     ++counts.with_test;
     counts.detectable += steady.trend.detectable / sigma;
@@ -71,8 +71,8 @@ void check(const std::vector<Setting>& settings, std::size_t ensembles) {
              "reached", "found", "reached", "tested", "sigmas", "found");
   for (const Setting& setting : settings) {
     const Counts counts = calibrated(setting, ensembles);
-    const auto share = [&](std::size_t n, std::size_t of) {
-      return of == 0 ? std::nan("") : static_cast<double>(n) / static_cast<double>(of);
+    const auto share = [&](std::size_t n, std::size_t total) {
+      return total == 0 ? std::nan("") : static_cast<double>(n) / static_cast<double>(total);
     };
     const double alarms = share(counts.false_alarms, ensembles);
     const double reached_1 = share(counts.reached_1, ensembles);
@@ -152,9 +152,11 @@ void check_one_realization(double rho, std::size_t n_taps, std::size_t ensembles
     const SteadyState state = test.result();
     if (!state.error.known()) continue;
     ++given;
-    const double off = std::abs(state.value);
-    at_68 += off <= state.error.error * student_two_sided(interval_levels[0], state.error.dof);
-    at_95 += off <= state.error.error * student_two_sided(interval_levels[1], state.error.dof);
+    const double deviation = std::abs(state.value);
+    at_68 +=
+        deviation <= state.error.error * student_two_sided(interval_levels[0], state.error.dof);
+    at_95 +=
+        deviation <= state.error.error * student_two_sided(interval_levels[1], state.error.dof);
   }
   const auto share = [&](std::size_t n) {
     return given == 0 ? 0 : static_cast<double>(n) / static_cast<double>(given);
@@ -202,14 +204,14 @@ MemoryCounts memory_counts(std::size_t realizations, std::size_t n_taps, double 
       continue;
     }
     ++counts.given;
-    const auto within = [](double off, const ErrorOf& error, double level) {
-      return std::abs(off) <= error.error * student_two_sided(level, error.dof);
+    const auto is_covered = [](double deviation, const ErrorOf& error, double level) {
+      return std::abs(deviation) <= error.error * student_two_sided(level, error.dof);
     };
     const ErrorOf time_error{found.error, 1e6};
-    counts.sigma_68 += within(state.sigma - sigma, state.sigma_error, interval_levels[0]);
-    counts.sigma_95 += within(state.sigma - sigma, state.sigma_error, interval_levels[1]);
-    counts.time_68 += within(found.time - time, time_error, interval_levels[0]);
-    counts.time_95 += within(found.time - time, time_error, interval_levels[1]);
+    counts.sigma_68 += is_covered(state.sigma - sigma, state.sigma_error, interval_levels[0]);
+    counts.sigma_95 += is_covered(state.sigma - sigma, state.sigma_error, interval_levels[1]);
+    counts.time_68 += is_covered(found.time - time, time_error, interval_levels[0]);
+    counts.time_95 += is_covered(found.time - time, time_error, interval_levels[1]);
   }
   return counts;
 }

@@ -18,8 +18,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 template <class Value>
 const std::vector<Value>& column(const Table& table, std::string_view name) {
-  for (const Quantity& one : table.quantities) {
-    if (one.name == name) return std::get<std::vector<Value>>(one.values);
+  for (const Quantity& quantity : table.quantities) {
+    if (quantity.name == name) return std::get<std::vector<Value>>(quantity.values);
   }
   FAIL("no " << name);
   return std::get<std::vector<Value>>(table.quantities.front().values);
@@ -28,11 +28,11 @@ const std::vector<Value>& column(const Table& table, std::string_view name) {
 /// A point with one number, whose values at the last tap are given.
 ComparedPoint point_of(std::uint32_t number, std::vector<double> values,
                        std::vector<std::uint64_t> taps = {0, 10}) {
-  PackingNumber one{"coordination", "n_c", "1", "mean coordination", {}};
+  PackingNumber packing_number{"coordination", "n_c", "1", "mean coordination", {}};
   for (std::size_t i = 0; i + 1 < taps.size(); ++i)
-    one.values.emplace_back(values.size(), 100.0 * number);
-  one.values.push_back(std::move(values));
-  return {"point " + std::to_string(number), number, std::move(taps), {one}};
+    packing_number.values.emplace_back(values.size(), 100.0 * number);
+  packing_number.values.push_back(std::move(values));
+  return {"point " + std::to_string(number), number, std::move(taps), {packing_number}};
 }
 
 }  // namespace
@@ -64,8 +64,8 @@ TEST_CASE("Realizations of matched streams are pairs") {
   CHECK(column<double>(paired, "difference_error").at(0) == Approx(0.1 / std::sqrt(3.0)));
   CHECK(column<double>(paired, "difference_dof").at(0) == 2);
   CHECK(column<double>(paired, "p").at(0) < 0.01);
-  const Table apart = comparison_tables(points, Streams::independent).at(0);
-  CHECK(column<double>(apart, "p").at(0) > 0.5);
+  const Table separated = comparison_tables(points, Streams::independent).at(0);
+  CHECK(column<double>(separated, "p").at(0) > 0.5);
 }
 
 TEST_CASE("Differences without scatter, and single realizations, have no p-value") {
@@ -88,9 +88,9 @@ TEST_CASE("Many points are compared with the first, and points without a common 
   CHECK(column<std::uint64_t>(table, "from_point") ==
         std::vector<std::uint64_t>(most_compared_pairwise, 0));
   CHECK(comparison_tables(std::span(points).first(1), Streams::independent).empty());
-  const std::vector<ComparedPoint> apart{point_of(0, {1, 2}, {0, 10}),
-                                         point_of(1, {1, 2}, {5, 20})};
-  CHECK(comparison_tables(apart, Streams::independent).empty());
+  const std::vector<ComparedPoint> separated{point_of(0, {1, 2}, {0, 10}),
+                                             point_of(1, {1, 2}, {5, 20})};
+  CHECK(comparison_tables(separated, Streams::independent).empty());
   const std::vector<ComparedPoint> shared{point_of(0, {1, 2}, {0, 10, 30}),
                                           point_of(3, {1, 2}, {0, 10, 20})};
   CHECK(comparison_tables(shared, Streams::independent).at(0).notes.at(0).second == "10");
@@ -99,14 +99,15 @@ TEST_CASE("Many points are compared with the first, and points without a common 
 }
 
 TEST_CASE("Numbers of packings are single values with an error") {
-  Measurement one{.part = "order"};
-  one.places = {{"height", std::vector<double>{1, 2}, "diameter", "height"}};
-  one.quantities = {{.name = "q6", .values = {0.4}, .long_name = "mean q6"},
-                    {.name = "q6_at_height", .places = "height", .values = {0.1, 0.2}},
-                    {.name = "line_error", .values = {0.1}, .with_error = false},
-                    {.name = "n_pores", .values = {9}, .is_compared = false},
-                    {.name = "pairs", .values = {7}, .pooling = Pooling::sum}};
-  const EnsembleStructure structure{.taps = {0, 3}, .packings = {{{one}, {}}, {{}, {one}}}};
+  Measurement measurement{.part = "order"};
+  measurement.places = {{"height", std::vector<double>{1, 2}, "diameter", "height"}};
+  measurement.quantities = {{.name = "q6", .values = {0.4}, .long_name = "mean q6"},
+                            {.name = "q6_at_height", .places = "height", .values = {0.1, 0.2}},
+                            {.name = "line_error", .values = {0.1}, .with_error = false},
+                            {.name = "n_pores", .values = {9}, .is_compared = false},
+                            {.name = "pairs", .values = {7}, .pooling = Pooling::sum}};
+  const EnsembleStructure structure{.taps = {0, 3},
+                                    .packings = {{{measurement}, {}}, {{}, {measurement}}}};
   const ComparedPoint numbers = packing_numbers("weak", 4, structure);
   REQUIRE(numbers.numbers.size() == 1);
   CHECK(numbers.numbers[0].name == "q6");
@@ -121,7 +122,7 @@ namespace {
 /// How often p-values below 5 % arise where all points are alike: of one pair, and of any pair of
 /// three points after the correction.
 struct Alarms {
-  double one = 0, any = 0;
+  double single = 0, any = 0;
 };
 
 Alarms alarms_of(std::size_t n_realizations, Streams streams, double spread, std::size_t n) {
@@ -130,7 +131,7 @@ Alarms alarms_of(std::size_t n_realizations, Streams streams, double spread, std
   for (std::size_t trial = 0; trial < n; ++trial) {
     std::vector<double> level(n_realizations, 0.0);
     if (streams == Streams::matched) {
-      for (double& one : level) one = 3 * noise(random);
+      for (double& value : level) value = 3 * noise(random);
     }
     std::vector<ComparedPoint> points;
     for (std::uint32_t i = 0; i < 3; ++i) {
@@ -139,7 +140,7 @@ Alarms alarms_of(std::size_t n_realizations, Streams streams, double spread, std
       points.push_back(point_of(i, std::move(values)));
     }
     const Table table = comparison_tables(points, streams).at(0);
-    if (column<double>(table, "p").at(0) < significance_level) alarms.one += 1.0 / double(n);
+    if (column<double>(table, "p").at(0) < significance_level) alarms.single += 1.0 / double(n);
     const auto& corrected = column<double>(table, "p_corrected");
     if (std::ranges::any_of(corrected, [](double p) { return p < significance_level; })) {
       alarms.any += 1.0 / double(n);
@@ -156,12 +157,12 @@ void check_size(std::size_t n_trials) {
     for (const double spread : {1.0, 3.0}) {
       CAPTURE(m, spread);
       const Alarms paired = alarms_of(m, Streams::matched, spread, n_trials);
-      CHECK(paired.one == Approx(0.05).margin(margin));
+      CHECK(paired.single == Approx(0.05).margin(margin));
       CHECK(paired.any < 0.05 + margin);
-      const Alarms apart = alarms_of(m, Streams::independent, spread, n_trials);
-      CHECK(apart.one < 0.055 + margin);
-      CHECK(apart.one > 0.025);
-      CHECK(apart.any < 0.055 + margin);
+      const Alarms separated = alarms_of(m, Streams::independent, spread, n_trials);
+      CHECK(separated.single < 0.055 + margin);
+      CHECK(separated.single > 0.025);
+      CHECK(separated.any < 0.055 + margin);
     }
   }
 }

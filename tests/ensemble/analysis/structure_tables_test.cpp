@@ -15,8 +15,8 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 const Quantity& quantity(const Table& table, std::string_view name) {
-  for (const Quantity& one : table.quantities) {
-    if (one.name == name) return one;
+  for (const Quantity& quantity : table.quantities) {
+    if (quantity.name == name) return quantity;
   }
   FAIL("no " << name);
   return table.quantities.front();
@@ -27,36 +27,37 @@ const std::vector<double>& numbers(const Table& table, std::string_view name) {
 }
 
 /// Heights of 1, 2, .. and a value at each, and one single value.
-Measurement measurement(const std::vector<double>& along, double value) {
-  Measurement one{.part = "layers"};
+Measurement measurement(const std::vector<double>& places, double value) {
+  Measurement measurement{.part = "layers"};
   std::vector<double> heights;
-  for (std::size_t k = 0; k < along.size(); ++k) heights.push_back(static_cast<double>(k + 1));
-  one.places = {{"height", heights, "diameter", "height"}};
-  one.quantities = {
-      {.name = "n", .places = "height", .values = along, .long_name = "ends in nothing"},
+  for (std::size_t k = 0; k < places.size(); ++k) heights.push_back(static_cast<double>(k + 1));
+  measurement.places = {{"height", heights, "diameter", "height"}};
+  measurement.quantities = {
+      {.name = "n", .places = "height", .values = places, .long_name = "ends in nothing"},
       {.name = "share",
        .places = "height",
-       .values = along,
+       .values = places,
        .long_name = "ends in no value",
        .beyond = nan},
       {.name = "lateral", .values = {value}, .long_name = "one value", .with_change = true}};
-  return one;
+  return measurement;
 }
 
 /// Realizations whose curve of `part` is `curve` times 1 + 0.01 (r - 1), r = 0, 1, 2.
 EnsembleStructure three_curves(const char* part, const char* places, const char* name,
-                               const std::vector<double>& at, const std::vector<double>& curve,
-                               const char* counted = nullptr, double number = 0,
-                               double spread = 0.01) {
+                               const std::vector<double>& abscissae,
+                               const std::vector<double>& curve, const char* counted = nullptr,
+                               double number = 0, double spread = 0.01) {
   EnsembleStructure structure{.taps = {0}, .packings = {{}}};
   for (int r = 0; r < 3; ++r) {
-    Measurement one{.part = part};
-    one.places = {{places, at, "1", "places"}};
+    Measurement measurement{.part = part};
+    measurement.places = {{places, abscissae, "1", "places"}};
     std::vector<double> values = curve;
     for (double& value : values) value *= 1 + spread * (r - 1);
-    one.quantities = {{.name = name, .places = places, .values = values, .long_name = "a curve"}};
-    if (counted != nullptr) one.quantities.push_back({.name = counted, .values = {number}});
-    structure.packings[0].push_back({one});
+    measurement.quantities = {
+        {.name = name, .places = places, .values = values, .long_name = "a curve"}};
+    if (counted != nullptr) measurement.quantities.push_back({.name = counted, .values = {number}});
+    structure.packings[0].push_back({measurement});
   }
   return structure;
 }
@@ -65,13 +66,14 @@ EnsembleStructure three_curves(const char* part, const char* places, const char*
 
 TEST_CASE("A mean counts its packings if some may have no value") {
   EnsembleStructure structure{.taps = {0, 10}, .packings = {}};
-  const auto with = [](double value) {
-    Measurement one{.part = "gaps"};
-    one.quantities = {{.name = "z", .values = {value}, .with_packings = true},
-                      {.name = "rattlers", .values = {1}}};
-    return std::vector{one};
+  const auto measurement_with = [](double value) {
+    Measurement measurement{.part = "gaps"};
+    measurement.quantities = {{.name = "z", .values = {value}, .with_packings = true},
+                              {.name = "rattlers", .values = {1}}};
+    return std::vector{measurement};
   };
-  structure.packings = {{with(6), with(nan), with(7)}, {with(nan), with(nan), {}}};
+  structure.packings = {{measurement_with(6), measurement_with(nan), measurement_with(7)},
+                        {measurement_with(nan), measurement_with(nan), {}}};
   const Table table = structure_tables("", structure, {}).at(0);
   CHECK(numbers(table, "z")[0] == 6.5);
   CHECK(std::isnan(numbers(table, "z")[1]));
@@ -79,7 +81,7 @@ TEST_CASE("A mean counts its packings if some may have no value") {
         std::vector<std::uint64_t>{2, 0});
   CHECK(std::get<std::vector<std::uint64_t>>(quantity(table, "realizations").values) ==
         std::vector<std::uint64_t>{3, 2});
-  for (const Quantity& one : table.quantities) CHECK(one.name != "rattlers_packings");
+  for (const Quantity& quantity : table.quantities) CHECK(quantity.name != "rattlers_packings");
 }
 
 TEST_CASE("Pairs of packings are pooled: a ratio of sums, with the jackknife over packings") {
@@ -87,9 +89,9 @@ TEST_CASE("Pairs of packings are pooled: a ratio of sums, with the jackknife ove
   const std::vector<std::pair<double, double>> pairs = {{3, 2}, {0, 0}, {40, 50}, {11, 8}};
   EnsembleStructure structure{.taps = {0}, .packings = {{}}};
   for (const auto& [found, expected] : pairs) {
-    Measurement one{.part = "pair_correlation"};
-    one.places = {{"r", std::vector<double>{0.5}, "diameter", "distance"}};
-    one.quantities = {
+    Measurement measurement{.part = "pair_correlation"};
+    measurement.places = {{"r", std::vector<double>{0.5}, "diameter", "distance"}};
+    measurement.quantities = {
         {.name = "g",
          .places = "r",
          .values = {found / expected},
@@ -98,18 +100,18 @@ TEST_CASE("Pairs of packings are pooled: a ratio of sums, with the jackknife ove
          .beyond = nan},
         {.name = "centres", .values = {expected}, .pooling = Pooling::sum},
         {.name = "packings", .values = {expected > 0 ? 1.0 : 0.0}, .pooling = Pooling::sum}};
-    structure.packings[0].push_back({one});
+    structure.packings[0].push_back({measurement});
   }
   const Table table = structure_tables("", structure, {}).at(0);
   CHECK(numbers(table, "g")[0] == Approx(54.0 / 60));
   CHECK(numbers(table, "centres")[0] == 60);
   CHECK(numbers(table, "packings")[0] == 3);
-  const double without[] = {51.0 / 58, 14.0 / 10, 43.0 / 52};
-  const double mean = (without[0] + without[1] + without[2]) / 3;
+  const double expected[] = {51.0 / 58, 14.0 / 10, 43.0 / 52};
+  const double mean = (expected[0] + expected[1] + expected[2]) / 3;
   double squares = 0;
-  for (const double g : without) squares += (g - mean) * (g - mean);
+  for (const double g : expected) squares += (g - mean) * (g - mean);
   CHECK(numbers(table, "g_error")[0] == Approx(std::sqrt(squares * 2 / 3)));
-  for (const Quantity& one : table.quantities) CHECK(one.name != "centres_error");
+  for (const Quantity& quantity : table.quantities) CHECK(quantity.name != "centres_error");
   // 60 pairs are enough for a bin.
   for (const auto& [name, text] : table.notes) CHECK(name != "few_pairs");
   structure.packings[0].resize(2);
@@ -166,17 +168,18 @@ TEST_CASE(
 
 TEST_CASE("The laws of the papers are found in curves and counts, with jackknife errors") {
   const StructureSettings settings = all_structure();
-  std::vector<double> at, curve;
+  std::vector<double> abscissae, curve;
   for (int k = 0; k < 160; ++k) {
-    at.push_back(0.05 + 0.1 * k);
-    const double in_radii = 2 * at.back();
+    abscissae.push_back(0.05 + 0.1 * k);
+    const double in_radii = 2 * abscissae.back();
     const double truth[] = {0.61, 0.001, 2, 24};
     // Below the range of the law the curve is different.
-    curve.push_back(at.back() < GradientRange{}.low ? 0.1
-                                                    : DensityProfile().value(in_radii, truth));
+    curve.push_back(
+        abscissae.back() < GradientRange{}.low ? 0.1 : DensityProfile().value(in_radii, truth));
   }
   Table table =
-      structure_tables("", three_curves("profile", "height", "phi", at, curve), settings).at(0);
+      structure_tables("", three_curves("profile", "height", "phi", abscissae, curve), settings)
+          .at(0);
   CHECK(std::get<std::vector<std::string>>(quantity(table, "eq7_status").values)[0] == "converged");
   CHECK(numbers(table, "eq7_phi_0")[0] == Approx(0.61).epsilon(1e-7));
   CHECK(numbers(table, "eq7_alpha")[0] == Approx(0.001).epsilon(1e-5));
@@ -187,12 +190,13 @@ TEST_CASE("The laws of the papers are found in curves and counts, with jackknife
   // For a bed that ends 1.5 d above the layers at the floor nothing but its surface would be
   // fitted.
   std::vector<double> shallow;
-  for (const double height : at) {
+  for (const double height : abscissae) {
     const double truth[] = {0.61, 0.001, 2, 2 * (GradientRange{}.low + 1.5)};
     shallow.push_back(DensityProfile().value(2 * height, truth));
   }
   table =
-      structure_tables("", three_curves("profile", "height", "phi", at, shallow), settings).at(0);
+      structure_tables("", three_curves("profile", "height", "phi", abscissae, shallow), settings)
+          .at(0);
   CHECK(std::get<std::vector<std::string>>(quantity(table, "eq7_status").values)[0] ==
         "the surface is less than 2 d above the layers at the floor");
   CHECK(std::isnan(numbers(table, "eq7_phi_0")[0]));
@@ -266,10 +270,10 @@ TEST_CASE("A curve that no law can have is not fitted, with a reason") {
     return std::get<std::vector<std::string>>(quantity(table, prefix + "_status").values)[0];
   };
   // All cells of a perfect crystal have twelve faces; a region with a single pore.
-  std::vector<double> faces(13, 0.0), at(13);
-  for (int k = 0; k < 13; ++k) at[k] = k;
+  std::vector<double> faces(13, 0.0), abscissae(13);
+  for (int k = 0; k < 13; ++k) abscissae[k] = k;
   faces[12] = 1;
-  CHECK(status(three_curves("voronoi", "faces", "face_share", at, faces, "n_cells", 1000),
+  CHECK(status(three_curves("voronoi", "faces", "face_share", abscissae, faces, "n_cells", 1000),
                "normal_mean") == "too few places that hold anything");
   std::vector<double> rho(75, 0.0), xi(75);
   for (int k = 0; k < 75; ++k) xi[k] = 0.01 + 0.02 * k;

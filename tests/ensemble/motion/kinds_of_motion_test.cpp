@@ -128,25 +128,26 @@ TEST_CASE("The table of kinds has means over realizations of sums over their sph
     for (std::size_t kind = 0; kind < 3; ++kind) {
       CAPTURE(l, kind);
       double rise = 0, rise_squares = 0, lateral = 0, vertical = 0;
-      for (const Walk& one : all) {
-        const double bed = mean_of(one.moved[l], 3, height);
-        const double up = mean_of(one.moved[l], kind, height) - bed;
-        rise += up / n_realizations;
-        rise_squares += up * up / n_realizations;
-        lateral += mean_of(one.moved[l], kind, [](Vec3 d) { return d.x * d.x + d.y * d.y; }) /
+      for (const Walk& walk : all) {
+        const double bed = mean_of(walk.moved[l], 3, height);
+        const double upward = mean_of(walk.moved[l], kind, height) - bed;
+        rise += upward / n_realizations;
+        rise_squares += upward * upward / n_realizations;
+        lateral += mean_of(walk.moved[l], kind, [](Vec3 d) { return d.x * d.x + d.y * d.y; }) /
                    n_realizations;
         vertical +=
-            mean_of(one.moved[l], kind, [bed](Vec3 d) { return (d.z - bed) * (d.z - bed); }) /
+            mean_of(walk.moved[l], kind, [bed](Vec3 d) { return (d.z - bed) * (d.z - bed); }) /
             n_realizations;
       }
-      const std::size_t at = 3 * l + kind;
+      const std::size_t index = 3 * l + kind;
       const double spread = std::sqrt(std::max(0.0, rise_squares - rise * rise));
-      CHECK(column(kinds, "rise")[at] == Approx(rise).epsilon(1e-9).margin(1e-12));
-      CHECK(column(kinds, "rise_error")[at] ==
+      CHECK(column(kinds, "rise")[index] == Approx(rise).epsilon(1e-9).margin(1e-12));
+      CHECK(column(kinds, "rise_error")[index] ==
             Approx(spread / std::sqrt(n_realizations - 1.0)).epsilon(1e-6).margin(1e-9));
-      CHECK(column(kinds, "msd_lateral")[at] == Approx(lateral).epsilon(1e-9).margin(1e-18));
-      CHECK(column(kinds, "msd_z_about_bed")[at] == Approx(vertical).epsilon(1e-9).margin(1e-12));
-      CHECK(column(kinds, "lateral_diffusivity")[at] ==
+      CHECK(column(kinds, "msd_lateral")[index] == Approx(lateral).epsilon(1e-9).margin(1e-18));
+      CHECK(column(kinds, "msd_z_about_bed")[index] ==
+            Approx(vertical).epsilon(1e-9).margin(1e-12));
+      CHECK(column(kinds, "lateral_diffusivity")[index] ==
             Approx(lateral / (4 * static_cast<double>(lags[l]))).epsilon(1e-9).margin(1e-18));
     }
   }

@@ -64,7 +64,7 @@ MotionSettings settings_for(const Plan& plan) {
 class Twin {
  public:
   Twin(const Plan& plan, const std::vector<SnapshotRecord>& snapshots) : boundary_(plan.container) {
-    for (const SnapshotRecord& one : snapshots) positions_.push_back(one.centres);
+    for (const SnapshotRecord& snapshot : snapshots) positions_.push_back(snapshot.centres);
   }
 
   std::vector<Vec3> displacements(std::uint64_t origin, std::uint64_t lag) const {
@@ -82,9 +82,9 @@ class Twin {
 };
 
 template <class Of>
-double mean(const std::vector<Vec3>& displacements, const Of& of) {
+double mean(const std::vector<Vec3>& displacements, const Of& value_of) {
   double sum = 0;
-  for (const Vec3& d : displacements) sum += of(d);
+  for (const Vec3& d : displacements) sum += value_of(d);
   return sum / static_cast<double>(displacements.size());
 }
 
@@ -286,16 +286,16 @@ TEST_CASE("Following the motion changes nothing else, and continues bit for bit"
     plan.motion = settings_for(plan);
     Realization straight(plan, 0);
     while (!straight.finished()) straight.advance(1'000'000);
-    RealizationState without = straight.state();
-    without.motion.reset();
-    Bits all, same;
+    RealizationState bare = straight.state();
+    bare.motion.reset();
+    Bits all, equal_bits;
     all.add(plain.state());
-    same.add(without);
-    CHECK(all == same);
+    equal_bits.add(bare);
+    CHECK(all == equal_bits);
     auto interrupted = std::make_unique<Realization>(plan, 0);
     while (!interrupted->finished()) {
-      interrupted->advance(random.below(20 * plan.n_spheres));
-      if (random.below(3) == 0)
+      interrupted->advance(random.integer_below(20 * plan.n_spheres));
+      if (random.integer_below(3) == 0)
         interrupted = std::make_unique<Realization>(plan, 0, interrupted->state());
     }
     CHECK(interrupted->state().motion == straight.state().motion);

@@ -99,11 +99,11 @@ TEST_CASE("Resampled errors do not depend on the number of threads") {
   const InverseLog model;
   const Fit fitted = std::get<Fit>(fit(model, mean_curve(curves), {.profiles = false}));
   for (Resampling kind : {Resampling::jackknife, Resampling::bootstrap}) {
-    const ResampledErrors one = resample(model, curves, fitted, {.kind = kind, .count = 50});
+    const ResampledErrors single = resample(model, curves, fitted, {.kind = kind, .count = 50});
     for (int threads : {2, 3}) {
-      const ResampledErrors more =
+      const ResampledErrors larger =
           resample(model, curves, fitted, {.kind = kind, .count = 50, .threads = threads});
-      CHECK(more.errors == one.errors);
+      CHECK(larger.errors == single.errors);
     }
   }
 }

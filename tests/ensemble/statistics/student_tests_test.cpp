@@ -48,9 +48,9 @@ TEST_CASE("The power of Student's test is the tail of the noncentral t distribut
 }
 
 TEST_CASE("Errors of sums have the degrees of freedom of Satterthwaite and Welch") {
-  const ErrorOf both = combined({3, 4}, {4, 9});
-  CHECK(both.error == 5);
-  CHECK(both.dof == Approx(625 / (81.0 / 4 + 256.0 / 9)).epsilon(1e-14));
+  const ErrorOf pair = combined({3, 4}, {4, 9});
+  CHECK(pair.error == 5);
+  CHECK(pair.dof == Approx(625 / (81.0 / 4 + 256.0 / 9)).epsilon(1e-14));
   CHECK(combined({3, 4}, {0, 9}).dof == Approx(4));
   CHECK(combined({1, 4}, {1, infinite}).dof == Approx(16));
   CHECK_FALSE(combined({1, 4}, {}).known());

@@ -43,13 +43,13 @@ TEST_CASE("A linear ramp is flagged as drift, whatever rides on it") {
   for (std::uint64_t r = 0; r < 10; ++r) {
     ensemble.push_back(synthetic::with_ramp(synthetic::autoregressive(0.9, 1000, 12, r), change));
   }
-  const Trend many = trend_of(ensemble);
-  CHECK(many.drifts());
-  CHECK(std::abs(many.line.value - change) < 3 * many.line.over.error);
-  CHECK(std::abs(many.line.value - change) < 3 * many.line.within.error);
-  CHECK(many.line.over.dof == 9);
-  CHECK(many.line.within.dof == 30);
-  CHECK(many.tests == 4);
+  const Trend trend = trend_of(ensemble);
+  CHECK(trend.drifts());
+  CHECK(std::abs(trend.line.value - change) < 3 * trend.line.scatter_error.error);
+  CHECK(std::abs(trend.line.value - change) < 3 * trend.line.series_error.error);
+  CHECK(trend.line.scatter_error.dof == 9);
+  CHECK(trend.line.series_error.dof == 30);
+  CHECK(trend.tests == 4);
 }
 
 TEST_CASE("A series that changes without scatter is not constant, and every change is detectable") {
@@ -90,9 +90,9 @@ TEST_CASE("The errors within series are the scatter of slopes and halves", "[sta
     const Trend trend = test.result();
     lines.add(trend.line.value);
     halves.add(trend.halves.value);
-    if (!trend.line.within.known()) continue;
-    line_variances.add(std::pow(trend.line.within.error, 2));
-    halves_variances.add(std::pow(trend.halves.within.error, 2));
+    if (!trend.line.series_error.known()) continue;
+    line_variances.add(std::pow(trend.line.series_error.error, 2));
+    halves_variances.add(std::pow(trend.halves.series_error.error, 2));
   }
   // 3 errors of a deviation, and 5 % for what blocks share.
   const double tolerance = 3 / std::sqrt(2.0 * static_cast<double>(ensembles)) + 0.05;
@@ -107,8 +107,8 @@ TEST_CASE("A drift does not inflate the errors within series") {
     steady.push_back(synthetic::autoregressive(0.9, 2000, 14, r));
     drifting.push_back(synthetic::with_ramp(steady.back(), 50));
   }
-  CHECK(trend_of(drifting).line.within.error ==
-        Approx(trend_of(steady).line.within.error).epsilon(1e-9));
+  CHECK(trend_of(drifting).line.series_error.error ==
+        Approx(trend_of(steady).line.series_error.error).epsilon(1e-9));
 }
 
 TEST_CASE("Two realizations find drifts beyond their scatter, and report their power") {
@@ -119,7 +119,8 @@ TEST_CASE("Two realizations find drifts beyond their scatter, and report their p
   const Trend steady = trend_of(ensemble);
   CHECK_FALSE(steady.drifts());
   CHECK(steady.statement().starts_with("no drift found (p = "));
-  for (auto& series : ensemble) series = synthetic::with_ramp(series, 7 * steady.line.within.error);
+  for (auto& series : ensemble)
+    series = synthetic::with_ramp(series, 7 * steady.line.series_error.error);
   const Trend drifting = trend_of(ensemble);
   CHECK(drifting.drifts());
   CHECK(drifting.decisive.ends_with("within series"));

@@ -229,14 +229,14 @@ TEST_CASE("Levels of realizations cancel in the comparison of laws") {
   for (std::size_t i = 0; i < raised.t.size(); ++i) {
     for (std::size_t m = 0; m < 4; ++m) raised.values[4 * i + m] += m == 0 ? 0.03 : -0.01;
   }
-  const LawComparison one = comparison_of(bare, three_laws),
-                      other = comparison_of(raised, three_laws);
-  REQUIRE(one.leading == other.leading);
-  for (std::size_t i = 0; i < one.laws.size(); ++i) {
-    CAPTURE(one.laws[i].model);
-    CHECK(other.laws[i].difference * pooled(raised) ==
-          Approx(one.laws[i].difference * pooled(bare)).epsilon(1e-3).margin(1e-14));
-    CHECK(other.laws[i].p == Approx(one.laws[i].p).epsilon(1e-2).margin(1e-9));
+  const LawComparison comparison = comparison_of(bare, three_laws),
+                      second = comparison_of(raised, three_laws);
+  REQUIRE(comparison.leading == second.leading);
+  for (std::size_t i = 0; i < comparison.laws.size(); ++i) {
+    CAPTURE(comparison.laws[i].model);
+    CHECK(second.laws[i].difference * pooled(raised) ==
+          Approx(comparison.laws[i].difference * pooled(bare)).epsilon(1e-3).margin(1e-14));
+    CHECK(second.laws[i].p == Approx(comparison.laws[i].p).epsilon(1e-2).margin(1e-9));
   }
 }
 
@@ -266,8 +266,8 @@ TEST_CASE("Laws that draw one curve are not distinguished") {
   const Repeated repeated;
   for (const double deviation : {1e-6, 1e-3}) {
     const Curve curve = ensemble(truth_of("inverse_log"), taps(100), 6, {deviation, 0.9, 1e-3}, 3);
-    const Fit one = std::get<Fit>(fit(law, curve)), other = std::get<Fit>(fit(repeated, curve));
-    const LawComparison found = compare_laws({{&law, &one}, {&repeated, &other}}, curve);
+    const Fit first = std::get<Fit>(fit(law, curve)), second = std::get<Fit>(fit(repeated, curve));
+    const LawComparison found = compare_laws({{&law, &first}, {&repeated, &second}}, curve);
     REQUIRE(found.laws.size() == 2);
     CHECK(found.laws[1 - found.leading].same_curve);
     CHECK_FALSE(found.is_decided());
@@ -288,9 +288,10 @@ TEST_CASE("A law at its limit is compared as the law of that limit") {
       for (int m = 0; m < 6; ++m) values.push_back(1 - 1 / (1 + tap / 50) + 2e-3 * noise());
     }
     const Curve curve = mean_curve(t, std::move(values), 6);
-    const Fit one = std::get<Fit>(fit(inverse_log, curve)), other = std::get<Fit>(fit(kww, curve));
-    limits += one.limit.has_value();
-    const LawComparison found = compare_laws({{&inverse_log, &one}, {&kww, &other}}, curve);
+    const Fit first = std::get<Fit>(fit(inverse_log, curve)),
+              second = std::get<Fit>(fit(kww, curve));
+    limits += first.limit.has_value();
+    const LawComparison found = compare_laws({{&inverse_log, &first}, {&kww, &second}}, curve);
     REQUIRE(found.laws.size() == 2);
     for (const HeldOutLaw& law : found.laws) {
       CHECK(std::isfinite(law.squared_error));

@@ -52,7 +52,7 @@ Curve curve_of(const Ensemble& ensemble, const Law& law, const Model& model, int
   for (double& state : states) state = noise();
   for (double& offset : offsets) offset = ensemble.offset * noise();
   for (int k = 0; k < 200; ++k) {
-    const double at = law.first + law.step * k, value = model.value(at, law.truth.data());
+    const double time = law.first + law.step * k, value = model.value(time, law.truth.data());
     std::vector<double> row;
     int n = 0;
     for (int r = 0; r < ensemble.m; ++r) {
@@ -64,7 +64,7 @@ Curve curve_of(const Ensemble& ensemble, const Law& law, const Model& model, int
       state = ensemble.rho * state + std::sqrt(1 - ensemble.rho * ensemble.rho) * noise();
     }
     if (n < 2) continue;
-    t.push_back(at);
+    t.push_back(time);
     values.insert(values.end(), row.begin(), row.end());
   }
   return mean_of_present(std::move(t), std::move(values), static_cast<std::size_t>(ensemble.m));

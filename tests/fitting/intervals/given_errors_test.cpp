@@ -44,17 +44,17 @@ Curve in_units(Curve curve, double of_t, double of_x) {
 // Units of each parameter's value.
 void check_units(const Model& model, const Curve& curve, double of_t, double of_x,
                  const std::vector<double>& units) {
-  const Fit here = std::get<Fit>(fit(model, curve));
-  const Fit there = std::get<Fit>(fit(model, in_units(curve, of_t, of_x)));
+  const Fit plain_fit = std::get<Fit>(fit(model, curve));
+  const Fit scaled_fit = std::get<Fit>(fit(model, in_units(curve, of_t, of_x)));
   INFO(model.name() << ": t times " << of_t << ", X times " << of_x);
-  CHECK(here.error_dof == there.error_dof);
-  CHECK(verdict({here}, {}) == verdict({there}, {}));
+  CHECK(plain_fit.error_dof == scaled_fit.error_dof);
+  CHECK(verdict({plain_fit}, {}) == verdict({scaled_fit}, {}));
   for (std::size_t j = 0; j < units.size(); ++j) {
-    INFO(here.estimates[j].parameter.name);
-    CHECK(here.estimates[j].identifiability == there.estimates[j].identifiability);
+    INFO(plain_fit.estimates[j].parameter.name);
+    CHECK(plain_fit.estimates[j].identifiability == scaled_fit.estimates[j].identifiability);
     for (int level = 0; level < 2; ++level) {
-      const Interval &first = here.estimates[j].intervals[level],
-                     &second = there.estimates[j].intervals[level];
+      const Interval &first = plain_fit.estimates[j].intervals[level],
+                     &second = scaled_fit.estimates[j].intervals[level];
       // A profile finds its ends within 1e-6 of its threshold.
       const double margin = 3e-6 * (first.upper - first.lower) * units[j];
       CHECK(std::abs(second.lower - first.lower * units[j]) <= margin);

@@ -91,7 +91,7 @@ TEST_CASE("refits to shorter ranges find their own minima, with one-sided bounds
         std::pair{"KWW_sloppy", "kww"}}) {
     const SloppySet set = read_sloppy(name, model);
     for (const auto& refit : set.json["refits"]) {
-      const Curve part = within(set.curve, 1, refit["last"]);
+      const Curve part = restricted(set.curve, 1, refit["last"]);
       const Fit fitted = std::get<Fit>(fit(*set.model, part));
       INFO(name << " to " << refit["last"]);
       CHECK(fitted.residual_sum == Approx(refit["rss"].get<double>()).epsilon(1e-9));
@@ -104,7 +104,7 @@ TEST_CASE("refits to shorter ranges find their own minima, with one-sided bounds
     }
   }
   const SloppySet set = read_sloppy("IL_sloppy", "inverse_log");
-  const Fit shortest = std::get<Fit>(fit(*set.model, within(set.curve, 1, 300)));
+  const Fit shortest = std::get<Fit>(fit(*set.model, restricted(set.curve, 1, 300)));
   CHECK(shortest.estimates[0].identifiability == Identifiability::bounded_below);
   CHECK(shortest.estimates[0].statement.starts_with("X_inf has only a lower limit: X_inf > "));
 }

@@ -26,9 +26,9 @@ Curve ensemble(int n_realizations, double noise_size, int number) {
     memory.push_back(noise());
     levels.push_back(2 * noise_size * noise());
   }
-  for (const double at : t) {
+  for (const double time : t) {
     for (std::size_t r = 0; r < memory.size(); ++r) {
-      values.push_back(law.value(at, true_law().data()) + levels[r] + noise_size * memory[r]);
+      values.push_back(law.value(time, true_law().data()) + levels[r] + noise_size * memory[r]);
       memory[r] = 0.7 * memory[r] + std::sqrt(1 - 0.7 * 0.7) * noise();
     }
   }
@@ -60,14 +60,14 @@ void check(const char* name, int n_realizations, double noise_size, int ensemble
       }
     }
   }
-  const double one = 1.0 * found.covered[0] / found.examined;
+  const double coverage = 1.0 * found.covered[0] / found.examined;
   const double two = 1.0 * found.covered[1] / found.examined;
   std::printf("%-18s M %2d  noise %6.4f  68 %%: %5.1f  95 %%: %5.1f\n", name, n_realizations,
-              noise_size, 100 * one, 100 * two);
+              noise_size, 100 * coverage, 100 * two);
   INFO(name << ", " << n_realizations << " realizations, noise " << noise_size);
   const auto margin = [&](double rate) { return 3 * std::sqrt(rate * (1 - rate) / ensembles); };
-  CHECK(one >= 0.60 - margin(0.60));
-  CHECK(one <= 0.78 + margin(0.78));
+  CHECK(coverage >= 0.60 - margin(0.60));
+  CHECK(coverage <= 0.78 + margin(0.78));
   CHECK(two >= 0.90 - margin(0.90));
   CHECK(two <= 0.99 + margin(0.99));
 }

@@ -123,13 +123,13 @@ void check(const Ensemble& ensemble, int ensembles) {
   const auto margin = [&](double rate) { return 3 * std::sqrt(rate * (1 - rate) / found.fits); };
   for (std::size_t j = 0; j < found.covered[0].size(); ++j) {
     const std::string& name = model->parameters()[j].name;
-    const double one = 1.0 * found.covered[0][j] / found.fits;
+    const double value = 1.0 * found.covered[0][j] / found.fits;
     const double two = 1.0 * found.covered[1][j] / found.fits;
-    std::printf(" %s %4.1f %4.1f ", name.c_str(), 100 * one, 100 * two);
+    std::printf(" %s %4.1f %4.1f ", name.c_str(), 100 * value, 100 * two);
     INFO(ensemble.law.model << ' ' << name << ", " << scatter << ", " << ensemble.n_realizations
                             << " realizations");
-    CHECK(one >= 0.60 - margin(0.60));
-    CHECK(one <= 0.78 + margin(0.78));
+    CHECK(value >= 0.60 - margin(0.60));
+    CHECK(value <= 0.78 + margin(0.78));
     CHECK(two >= 0.90 - margin(0.90));
     CHECK(two <= 0.99 + margin(0.99));
   }

@@ -62,8 +62,8 @@ TEST_CASE("given errors are absolute") {
   CHECK(line.estimates[1].intervals[1].upper == Approx(1.1 + reach).epsilon(1e-5));
   // A point with a huge error does not count.
   curve.sigma[3] = 1e9;
-  const Fit without = std::get<Fit>(fit(Line(), curve));
-  CHECK(without.estimates[1].value == Approx(0.5).epsilon(1e-9));
+  const Fit bare_fit = std::get<Fit>(fit(Line(), curve));
+  CHECK(bare_fit.estimates[1].value == Approx(0.5).epsilon(1e-9));
 }
 
 TEST_CASE("a fixed parameter keeps its value and has no error") {

@@ -62,10 +62,10 @@ TEST_CASE("a report for people names what it gives") {
   CHECK(contains(describe(wide, ReportDetail::brief, {"mm", "s"}),
                  "  units: X_inf, dX, Z_inf, Z_0 in mm; tau in s\n"));
   CHECK(contains(describe(wide, ReportDetail::brief, {"1", "taps"}), "  units: tau in taps\n"));
-  const Fit other = std::get<Fit>(fit(kww, curve));
-  const LawComparison comparison = compare_laws({{&inverse_log, &wide}, {&kww, &other}}, curve);
-  CHECK(contains(compare({wide, other}, comparison), "kww"));
-  CHECK(verdict({wide, other}, comparison)
+  const Fit second = std::get<Fit>(fit(kww, curve));
+  const LawComparison comparison = compare_laws({{&inverse_log, &wide}, {&kww, &second}}, curve);
+  CHECK(contains(compare({wide, second}, comparison), "kww"));
+  CHECK(verdict({wide, second}, comparison)
             .starts_with(
                 "cannot decide: the choice of a law requires 3 independent realizations or more"));
 }

@@ -45,23 +45,24 @@ void check_alike(const Estimate& a, const Estimate& b) {
 TEST_CASE("Equivalent laws draw the same curves, and are each other's equivalent") {
   int pairs = 0;
   for (const auto& model : all_models()) {
-    const auto other = model->equivalent();
-    if (!other) continue;
+    const auto equivalent = model->equivalent();
+    if (!equivalent) continue;
     ++pairs;
     INFO(model->name());
-    const auto back = other->law->equivalent();
+    const auto back = equivalent->law->equivalent();
     REQUIRE(back);
     CHECK(back->law->name() == model->name());
     const ParameterValues p = model->name() == "inverse_log" ? ParameterValues{13.9, -0.77, 0.7, 4}
                                                              : ParameterValues{13.9, 14.67, 0.8, 4};
-    const ParameterValues q = other->restate(p), again = back->restate(q);
-    REQUIRE(q.size() == other->equal.size());
+    const ParameterValues q = equivalent->restate(p), repeated = back->restate(q);
+    REQUIRE(q.size() == equivalent->equal.size());
     for (const double t : {0.0, 1.0, 30.0, 4000.0}) {
-      CHECK(other->law->value(t, q.data()) == Approx(model->value(t, p.data())).epsilon(1e-14));
+      CHECK(equivalent->law->value(t, q.data()) ==
+            Approx(model->value(t, p.data())).epsilon(1e-14));
     }
-    for (std::size_t j = 0; j < p.size(); ++j) CHECK(again[j] == Approx(p[j]).epsilon(1e-14));
+    for (std::size_t j = 0; j < p.size(); ++j) CHECK(repeated[j] == Approx(p[j]).epsilon(1e-14));
     for (std::size_t j = 0; j < q.size(); ++j) {
-      if (other->equal[j]) CHECK(q[j] == p[*other->equal[j]]);
+      if (equivalent->equal[j]) CHECK(q[j] == p[*equivalent->equal[j]]);
     }
   }
   CHECK(pairs == 2);
@@ -89,9 +90,9 @@ TEST_CASE("A fixed parameter is restated where both laws have it, and nothing is
   const Curve curve = heights(1);
   FitOptions options;
   options.fixed = {{"tau", 4.0}};
-  const Fit both = fitted(InverseLog(), curve, options);
-  REQUIRE(both.restated);
-  CHECK(both.restated->estimates[3].identifiability == Identifiability::fixed);
+  const Fit fit_of_law = fitted(InverseLog(), curve, options);
+  REQUIRE(fit_of_law.restated);
+  CHECK(fit_of_law.restated->estimates[3].identifiability == Identifiability::fixed);
   options.fixed = {{"dX", -0.77}};
   CHECK_FALSE(fitted(InverseLog(), curve, options).restated);
   // A law of heights has no curve that falls below 0.

@@ -91,12 +91,12 @@ const std::map<std::string, Example>& examples() {
 // Central differences of the formula in long double, good to about 12 digits.
 Long derivative(const Formula& formula, double t, const ParameterValues& p, std::size_t j) {
   const Long h = 1e-6L * std::max(std::abs(p[j]), 1e-3);
-  const auto at = [&](Long steps) {
+  const auto value_at = [&](Long steps) {
     std::vector<Long> moved(p.begin(), p.end());
     moved[j] += steps * h;
     return formula(t, moved);
   };
-  return (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
+  return (8 * (value_at(1) - value_at(-1)) - (value_at(2) - value_at(-2))) / (12 * h);
 }
 
 }  // namespace

@@ -41,10 +41,10 @@ void work_on(const std::string& path, const synthetic::Conduct& conduct) {
 constexpr synthetic::Conduct whole{.checkpoint_every = 6};
 constexpr synthetic::Conduct stopped{.checkpoint_every = 6, .steps = 7};
 
-Ending work_with_fault(const Place& place, const std::string& action, long at) {
+Ending work_with_fault(const Place& place, const std::string& action, long call) {
   return run_forked({{"JOSTLE_FAULT_PATH", place.path},
                      {"JOSTLE_FAULT_ACTION", action},
-                     {"JOSTLE_FAULT_AT", fmt::format("{}", at)}},
+                     {"JOSTLE_FAULT_AT", fmt::format("{}", call)}},
                     place.messages, [&] { work_on(place.path, whole); });
 }
 
@@ -85,10 +85,10 @@ void kill_at_calls(long stride) {
   const auto [calls, digest] = undisturbed();
   REQUIRE(calls > 50);
   const std::string action = GENERATE("kill_before", "kill_within", "kill_after");
-  for (long at = action == "kill_after" ? calls : 1; at <= calls; at += stride) {
-    CAPTURE(action, at, calls);
+  for (long call = action == "kill_after" ? calls : 1; call <= calls; call += stride) {
+    CAPTURE(action, call, calls);
     const Place place;
-    REQUIRE(work_with_fault(place, action, at).signal == SIGKILL);
+    REQUIRE(work_with_fault(place, action, call).signal == SIGKILL);
     check_recovery(place, digest);
   }
 }
@@ -96,12 +96,12 @@ void kill_at_calls(long stride) {
 void kill_while_going_on(long stride) {
   const std::string digest = undisturbed().digest;
   bool killed = true;
-  for (long at = 1; killed; at += stride) {
-    CAPTURE(at);
+  for (long call = 1; killed; call += stride) {
+    CAPTURE(call);
     const Place place;
     work_on(place.path, stopped);
     REQUIRE(ResultsFile(place.path).state() == RunState::interrupted);
-    killed = work_with_fault(place, "kill_after", at).signal == SIGKILL;
+    killed = work_with_fault(place, "kill_after", call).signal == SIGKILL;
     check_recovery(place, digest);
   }
 }
@@ -130,10 +130,10 @@ TEST_CASE("killed while it continues from a folded file, nothing is lost") {
 
 TEST_CASE("a full disk is reported with its path, and the run continues once there is room") {
   const auto [calls, digest] = undisturbed();
-  for (long at = 1; at <= calls; at += 2) {
-    CAPTURE(at, calls);
+  for (long call = 1; call <= calls; call += 2) {
+    CAPTURE(call, calls);
     const Place place;
-    const Ending ending = work_with_fault(place, "no_space", at);
+    const Ending ending = work_with_fault(place, "no_space", call);
     REQUIRE(ending.signal == 0);
     if (ending.code == 0) {  // no write was left to fail
       CHECK(digest_of(place.path) == digest);
@@ -172,10 +172,11 @@ TEST_CASE("whatever is published is on disk before it has its name, and its name
     while (last > 0 && !calls[last].second.ends_with(".tmp")) --last;
     CHECK(calls[last].first == "fsync");
     CHECK(calls[last].second.starts_with(path + "."));
-    for (std::size_t between = last + 1; between < i; ++between) {  // parts that --force discards
-      CAPTURE(calls[between].first, calls[between].second);
-      CHECK(calls[between].first != "rename");
-      CHECK(calls[between].first.find("write") == std::string::npos);
+    for (std::size_t discarded = last + 1; discarded < i;
+         ++discarded) {  // parts that --force discards
+      CAPTURE(calls[discarded].first, calls[discarded].second);
+      CHECK(calls[discarded].first != "rename");
+      CHECK(calls[discarded].first.find("write") == std::string::npos);
     }
     const std::string folder = std::filesystem::path(path).parent_path();
     CHECK(calls[i + 1] == std::pair<std::string, std::string>("fsync", folder));

@@ -42,20 +42,21 @@ std::span<const std::byte> bytes_of(const std::string& text) {
 }
 
 /// A folder with somebody's files, which must not change.
-struct Surroundings {
+struct HostileFolder {
   TemporaryFolder folder;
-  std::string path = folder / "a.h5", victim = folder / "victim", others = folder / "others";
-  Surroundings() {
+  std::string path = folder / "a.h5", victim = folder / "victim", other_folder = folder / "others";
+  HostileFolder() {
     std::ofstream(victim) << "mine\n";
-    fs::create_directory(others);
-    std::ofstream(others + "/p0000_r00000.state") << "mine";
-    std::ofstream(others + "/p0000_r00001.segment00000") << "mine";
-    std::ofstream(others + "/p0000_r00002.state.tmp") << "mine";
+    fs::create_directory(other_folder);
+    std::ofstream(other_folder + "/p0000_r00000.state") << "mine";
+    std::ofstream(other_folder + "/p0000_r00001.segment00000") << "mine";
+    std::ofstream(other_folder + "/p0000_r00002.state.tmp") << "mine";
   }
   void check_untouched() const {
     CHECK(text_of(victim) == "mine\n");
-    CHECK(std::distance(fs::directory_iterator(others), {}) == 3);
-    for (const auto& entry : fs::directory_iterator(others)) CHECK(text_of(entry.path()) == "mine");
+    CHECK(std::distance(fs::directory_iterator(other_folder), {}) == 3);
+    for (const auto& entry : fs::directory_iterator(other_folder))
+      CHECK(text_of(entry.path()) == "mine");
   }
 };
 
@@ -73,14 +74,14 @@ constexpr Planted all_planted[] = {
     Planted::link_to_file, Planted::link_to_folder, Planted::dangling_link, Planted::link_ring,
     Planted::fifo,         Planted::folder,         Planted::foreign,       Planted::hard_link};
 
-void plant(const Surroundings& around, const std::string& name, Planted what) {
-  switch (what) {
+void plant(const HostileFolder& hostile, const std::string& name, Planted kind) {
+  switch (kind) {
     case Planted::link_to_file:
-      return fs::create_symlink(around.victim, name);
+      return fs::create_symlink(hostile.victim, name);
     case Planted::link_to_folder:
-      return fs::create_symlink(around.others, name);
+      return fs::create_symlink(hostile.other_folder, name);
     case Planted::dangling_link:
-      return fs::create_symlink(around.folder / "nowhere", name);
+      return fs::create_symlink(hostile.folder / "nowhere", name);
     case Planted::link_ring:
       return fs::create_symlink(name, name);
     case Planted::fifo:
@@ -93,7 +94,7 @@ void plant(const Surroundings& around, const std::string& name, Planted what) {
       std::ofstream(name) << "mine\n";
       return;
     case Planted::hard_link:
-      return fs::create_hard_link(around.victim, name);
+      return fs::create_hard_link(hostile.victim, name);
   }
 }
 
@@ -107,105 +108,105 @@ void run_whole(const std::string& path, bool force) {
 }  // namespace
 
 TEST_CASE("any object at the name of the lock is refused, and left as it is") {
-  const Planted what = GENERATE(from_range(std::begin(all_planted), std::end(all_planted)));
+  const Planted kind = GENERATE(from_range(std::begin(all_planted), std::end(all_planted)));
   const bool force = GENERATE(false, true);
-  const Surroundings around;
-  plant(around, around.path + ".lock", what);
-  CAPTURE(static_cast<int>(what), force);
-  CHECK_THROWS_WITH(run_whole(around.path, force), Contains("a.h5.lock"));
-  CHECK_FALSE(lock_owner(around.path));
-  CHECK(fs::is_symlink(fs::symlink_status(around.path + ".lock")) == (static_cast<int>(what) < 4));
-  CHECK_FALSE(fs::exists(around.path));
-  CHECK_FALSE(fs::exists(around.folder / "nowhere"));
-  around.check_untouched();
+  const HostileFolder hostile;
+  plant(hostile, hostile.path + ".lock", kind);
+  CAPTURE(static_cast<int>(kind), force);
+  CHECK_THROWS_WITH(run_whole(hostile.path, force), Contains("a.h5.lock"));
+  CHECK_FALSE(lock_owner(hostile.path));
+  CHECK(fs::is_symlink(fs::symlink_status(hostile.path + ".lock")) == (static_cast<int>(kind) < 4));
+  CHECK_FALSE(fs::exists(hostile.path));
+  CHECK_FALSE(fs::exists(hostile.folder / "nowhere"));
+  hostile.check_untouched();
 }
 
 TEST_CASE("a text that begins as a lock does is no lock, and left as it is") {
-  const Surroundings around;
-  const std::string name = around.path + ".lock", text = "notes 12 30\nof a text of somebody\n";
+  const HostileFolder hostile;
+  const std::string name = hostile.path + ".lock", text = "notes 12 30\nof a text of somebody\n";
   std::ofstream(name) << text;
-  CHECK_THROWS_WITH(run_whole(around.path, true), Contains("is no lock of jostle"));
+  CHECK_THROWS_WITH(run_whole(hostile.path, true), Contains("is no lock of jostle"));
   std::ifstream left(name);
   CHECK(std::string(std::istreambuf_iterator<char>(left), {}) == text);
 }
 
 TEST_CASE("any object at the name of the parts is refused, and left as it is") {
-  const Planted what = GENERATE(from_range(std::begin(all_planted), std::end(all_planted)));
-  if (what == Planted::folder) return;  // the file that belongs there
+  const Planted kind = GENERATE(from_range(std::begin(all_planted), std::end(all_planted)));
+  if (kind == Planted::folder) return;  // the file that belongs there
   const bool force = GENERATE(false, true);
-  const Surroundings around;
-  plant(around, around.path + ".parts", what);
-  CAPTURE(static_cast<int>(what), force);
-  CHECK_THROWS_WITH(run_whole(around.path, force), Contains("a.h5.parts"));
-  CHECK_THROWS_WITH(remove_parts(around.path), Contains("a.h5.parts"));
-  CHECK_THROWS_WITH(parts_exist(around.path), Contains("a.h5.parts"));
-  CHECK_FALSE(fs::exists(around.folder / "nowhere"));
-  around.check_untouched();
+  const HostileFolder hostile;
+  plant(hostile, hostile.path + ".parts", kind);
+  CAPTURE(static_cast<int>(kind), force);
+  CHECK_THROWS_WITH(run_whole(hostile.path, force), Contains("a.h5.parts"));
+  CHECK_THROWS_WITH(remove_parts(hostile.path), Contains("a.h5.parts"));
+  CHECK_THROWS_WITH(parts_exist(hostile.path), Contains("a.h5.parts"));
+  CHECK_FALSE(fs::exists(hostile.folder / "nowhere"));
+  hostile.check_untouched();
 }
 
 TEST_CASE("a folder of parts that is exchanged for a link under a run ends it without harm") {
-  const Surroundings around;
-  run_whole(around.path, false);
-  const std::string other = around.folder / "b.h5";
+  const HostileFolder hostile;
+  run_whole(hostile.path, false);
+  const std::string second = hostile.folder / "b.h5";
   const Study study = synthetic::study({});
-  const auto store = RunStore::create(other, study, {}, synthetic::provenance());
+  const auto store = RunStore::create(second, study, {}, synthetic::provenance());
   REQUIRE(store->begin({0, 0}) == std::nullopt);
-  fs::remove_all(other + ".parts");
-  fs::create_symlink(around.others, other + ".parts");
+  fs::remove_all(second + ".parts");
+  fs::create_symlink(hostile.other_folder, second + ".parts");
   CHECK_THROWS_AS(store->begin({0, 1}), ResultsError);
   CHECK_THROWS_AS(store->finish(), ResultsError);
-  around.check_untouched();
+  hostile.check_untouched();
 }
 
 TEST_CASE("links and pipes in the place of parts are not written through and not waited for") {
-  const Surroundings around;
+  const HostileFolder hostile;
   const Study study = synthetic::study({});
-  const std::string state = around.path + ".parts/p0000_r00000.state";
+  const std::string state = hostile.path + ".parts/p0000_r00000.state";
   {
-    const auto store = RunStore::create(around.path, study, {}, synthetic::provenance());
-    fs::create_directories(around.path + ".parts");
-    fs::create_symlink(around.victim, state);
+    const auto store = RunStore::create(hostile.path, study, {}, synthetic::provenance());
+    fs::create_directories(hostile.path + ".parts");
+    fs::create_symlink(hostile.victim, state);
     CHECK_THROWS_AS(synthetic::run(*store, study, {0, 0}), ResultsError);
   }
-  around.check_untouched();
+  hostile.check_untouched();
   fs::remove(state);
   REQUIRE(::mkfifo(state.c_str(), 0666) == 0);
-  CHECK_THROWS_WITH(RunStore::resume(around.path, study, {}, synthetic::provenance()),
+  CHECK_THROWS_WITH(RunStore::resume(hostile.path, study, {}, synthetic::provenance()),
                     Contains("not a file"));
 }
 
 TEST_CASE(
     "a temporary file has a name that nobody can foresee, and only its stale kin are removed") {
-  const Surroundings around;
-  const std::string stale = around.path + ".01234abc.tmp";
-  const std::vector<std::string> kept = {around.path + ".tmp", around.path + ".01234abX.tmp",
-                                         around.folder / "b.h5.01234abc.tmp",
-                                         around.path + ".01234abc0.tmp"};
+  const HostileFolder hostile;
+  const std::string stale = hostile.path + ".01234abc.tmp";
+  const std::vector<std::string> kept = {hostile.path + ".tmp", hostile.path + ".01234abX.tmp",
+                                         hostile.folder / "b.h5.01234abc.tmp",
+                                         hostile.path + ".01234abc0.tmp"};
   std::ofstream(stale) << "half";
   for (const std::string& name : kept) std::ofstream(name) << "mine\n";
-  fs::create_symlink(around.victim, around.path + ".99999999.tmp");
+  fs::create_symlink(hostile.victim, hostile.path + ".99999999.tmp");
   std::string first;
   {
-    const TemporaryFile file(around.path);
+    const TemporaryFile file(hostile.path);
     first = file.name();
-    const TemporaryFile other(around.path);
-    CHECK(other.name() != first);
+    const TemporaryFile second(hostile.path);
+    CHECK(second.name() != first);
     CHECK(fs::exists(first));
   }
   CHECK_FALSE(fs::exists(first));
-  run_whole(around.path, false);
+  run_whole(hostile.path, false);
   CHECK_FALSE(fs::exists(stale));
   for (const std::string& name : kept) CHECK(text_of(name) == "mine\n");
-  CHECK(fs::is_symlink(fs::symlink_status(around.path + ".99999999.tmp")));
-  around.check_untouched();
+  CHECK(fs::is_symlink(fs::symlink_status(hostile.path + ".99999999.tmp")));
+  hostile.check_untouched();
 }
 
 TEST_CASE("a file that is replaced keeps its permissions, and a new one has those of the process") {
   const TemporaryFolder folder;
   const std::string path = folder / "a.h5";
-  const mode_t before = ::umask(022);
+  const mode_t umask_before = ::umask(022);
   synthetic::run_to_end(path);
-  ::umask(before);
+  ::umask(umask_before);
   CHECK(mode_of(path) == 0644);
   for (const unsigned mode : {0600U, 0640U, 0660U, 0604U}) {
     REQUIRE(::chmod(path.c_str(), mode) == 0);
@@ -234,7 +235,7 @@ TEST_CASE("the parts of a private file are private") {
 
 TEST_CASE("a write-protected file is not replaced") {
   const TemporaryFolder folder;
-  const std::string path = folder / "a.h5", other = folder / "b.h5";
+  const std::string path = folder / "a.h5", second = folder / "b.h5";
   const std::string digest = synthetic::run_to_end(path);
   REQUIRE(::chmod(path.c_str(), 0444) == 0);
   const auto says = Contains("write-protected (mode 444)");
@@ -245,8 +246,8 @@ TEST_CASE("a write-protected file is not replaced") {
   const Table table{.name = "t", .axes = {}, .quantities = {}, .notes = {}};
   CHECK_THROWS_WITH(store_tables(path, "fits", std::span(&table, 1), synthetic::provenance()),
                     says);
-  synthetic::run_to_end(other);
-  CHECK_THROWS_WITH(merge_files(std::span(&other, 1), path, synthetic::provenance(), true), says);
+  synthetic::run_to_end(second);
+  CHECK_THROWS_WITH(merge_files(std::span(&second, 1), path, synthetic::provenance(), true), says);
   CHECK(digest_of(path) == digest);
   CHECK(mode_of(path) == 0444);
   CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 2);

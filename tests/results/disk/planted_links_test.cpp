@@ -30,8 +30,8 @@ constexpr uid_t somebody = 65534, somebody_else = 65533;
 
 /// "folder" of an owner, with a mode, and "link" of another in it, which leads to `target`.
 struct SharedFolder {
-  TemporaryFolder around;
-  std::string folder = around / "folder", link = folder + "/link";
+  TemporaryFolder outer;
+  std::string folder = outer / "folder", link = folder + "/link";
   SharedFolder(uid_t owner, mode_t mode, uid_t owner_of_link, const std::string& target) {
     fs::create_directory(folder);
     fs::create_symlink(target, link);
@@ -120,10 +120,10 @@ TEST_CASE("links are followed where nobody else can have put them") {
 TEST_CASE("no function that writes follows a link that another user planted") {
   if (::geteuid() != 0) return;
   const mode_t mode = GENERATE(01777, 0777, 0775);
-  const TemporaryFolder around;
-  const std::string victim = around / "victim", source = around / "source.h5";
+  const TemporaryFolder outer_folder;
+  const std::string victim = outer_folder / "victim", source = outer_folder / "source.h5";
   std::ofstream(victim) << "mine\n";
-  const SharedFolder end(0, mode, somebody, victim), way(0, mode, somebody, around.path());
+  const SharedFolder end(0, mode, somebody, victim), way(0, mode, somebody, outer_folder.path());
   const Table table{.name = "t", .axes = {}, .quantities = {}, .notes = {}};
   const std::string digest = synthetic::run_to_end(source);
   for (const std::string& path : {end.link, way.link + "/new", way.link + "/victim"}) {
@@ -146,13 +146,14 @@ TEST_CASE("no function that writes follows a link that another user planted") {
   CHECK_THROWS_WITH(ScratchFolder("test", way.link), Contains("another user"));
   CHECK(digest_of(source) == digest);
   CHECK(text_of(victim) == "mine\n");
-  CHECK(std::distance(fs::directory_iterator(around.path()), {}) == 2);
+  CHECK(std::distance(fs::directory_iterator(outer_folder.path()), {}) == 2);
 }
 
 TEST_CASE("a pipe, or a folder of parts, that another user planted is not used") {
   if (::geteuid() != 0) return;
-  const TemporaryFolder around;
-  const std::string folder = around / "folder", path = folder + "/a.h5", pipe = folder + "/pipe";
+  const TemporaryFolder outer_folder;
+  const std::string folder = outer_folder / "folder", path = folder + "/a.h5",
+                    pipe = folder + "/pipe";
   fs::create_directory(folder);
   REQUIRE(::chmod(folder.c_str(), 01777) == 0);
   REQUIRE(::mkfifo(pipe.c_str(), 0666) == 0);

@@ -25,19 +25,20 @@ std::string escaped(const std::string& bytes) {
 }  // namespace
 
 TEST_CASE("Characters that a terminal would not show are escaped in texts and names") {
-  for (const std::string one : hidden) {
-    CHECK(printable("a" + one + "b") == "a" + escaped(one) + "b");
-    CHECK(printable_name("a" + one + "b") == "a" + escaped(one) + "b");
+  for (const std::string character : hidden) {
+    CHECK(printable("a" + character + "b") == "a" + escaped(character) + "b");
+    CHECK(printable_name("a" + character + "b") == "a" + escaped(character) + "b");
   }
   CHECK(printable("two\nlines, \tand \xc3\xa9") == "two\nlines, \tand \xc3\xa9");
   CHECK(printable_name("two\nlines, \tand \xc3\xa9") == "two\\x0alines, \\x09and \xc3\xa9");
 }
 
 TEST_CASE("JSON is shown without what turns or controls a terminal, and reads the same") {
-  for (const std::string one : hidden) {
-    const nlohmann::json json = {{"name", "a" + one + "b"}, {"\xc3\xa9 \xf0\x9f\x98\x80", 1.5}};
+  for (const std::string character : hidden) {
+    const nlohmann::json json = {{"name", "a" + character + "b"},
+                                 {"\xc3\xa9 \xf0\x9f\x98\x80", 1.5}};
     const std::string shown = printable_json(json.dump(2));
-    CHECK(shown.find(one) == std::string::npos);
+    CHECK(shown.find(character) == std::string::npos);
     CHECK(printable(shown) == shown);
     CHECK(nlohmann::json::parse(shown) == json);
   }

@@ -31,9 +31,9 @@ using Reading = std::function<std::string(const std::string& path)>;
 
 std::string summary_of(const ResultsFile& file) {
   std::string text = file.study().resolved_scene;
-  for (const RealizationSummary& one : file.realizations()) {
-    const RealizationRecord record = file.record(one.id);
-    text += fmt::format("{} {}\n", one.rows, record.snapshots.size());
+  for (const RealizationSummary& realization : file.realizations()) {
+    const RealizationRecord record = file.record(realization.id);
+    text += fmt::format("{} {}\n", realization.rows, record.snapshots.size());
     for (const double number : record.rows) text += fmt::format("{} ", number);
   }
   for (const EnsembleSeries& series : file.ensemble(0)) text += fmt::format("{}", series.mean[0]);
@@ -110,45 +110,46 @@ const Case cases[] = {
 };
 
 /// Reads in a process of its own; what it made of the file goes to `output`.
-Ending read_with(const TemporaryFolder& folder, const Case& one,
+Ending read_with(const TemporaryFolder& folder, const Case& fault_case,
                  std::map<std::string, std::string> environment) {
   environment["JOSTLE_FAULT_OF"] = "reads";
-  environment["JOSTLE_FAULT_PATH"] = folder / one.name;
+  environment["JOSTLE_FAULT_PATH"] = folder / fault_case.name;
   return run_forked(environment, folder / "messages", [&] {
-    const std::string text = one.read(folder / one.name);
+    const std::string text = fault_case.read(folder / fault_case.name);
     std::ofstream(folder / "output") << text;
   });
 }
 
 /// Lets each of about `most` reads, spread over all, fail in the way of `action`.
-void try_reads(const Case& one, const std::string& action, long most) {
+void try_reads(const Case& fault_case, const std::string& action, long most) {
   long calls = 1;
   std::string whole;
   {
     const TemporaryFolder folder;
-    one.write(folder / one.name);
-    REQUIRE(read_with(folder, one, {{"JOSTLE_FAULT_COUNT", folder / "count"}}).code == 0);
+    fault_case.write(folder / fault_case.name);
+    REQUIRE(read_with(folder, fault_case, {{"JOSTLE_FAULT_COUNT", folder / "count"}}).code == 0);
     calls = std::stol(text_of(folder / "count"));
     whole = text_of(folder / "output");
   }
   // A digest is computed in a child process, whose reads are not in the count.
-  if (std::string(one.name) == "digest.h5") calls = std::max(calls, 20L);
+  if (std::string(fault_case.name) == "digest.h5") calls = std::max(calls, 20L);
   REQUIRE(calls > 0);
   REQUIRE_FALSE(whole.empty());
   long refused = 0, tried = 0;
-  for (long at = 1; at <= calls; at += std::max(1L, calls / most)) {
+  for (long call = 1; call <= calls; call += std::max(1L, calls / most)) {
     ++tried;
-    CAPTURE(one.name, action, at, calls);
+    CAPTURE(fault_case.name, action, call, calls);
     const TemporaryFolder folder;
-    one.write(folder / one.name);
-    const Ending ending = read_with(
-        folder, one, {{"JOSTLE_FAULT_ACTION", action}, {"JOSTLE_FAULT_AT", fmt::format("{}", at)}});
+    fault_case.write(folder / fault_case.name);
+    const Ending ending =
+        read_with(folder, fault_case,
+                  {{"JOSTLE_FAULT_ACTION", action}, {"JOSTLE_FAULT_AT", fmt::format("{}", call)}});
     REQUIRE(ending.signal == 0);
     if (ending.code == 0) {
       CHECK(text_of(folder / "output") == whole);
     } else {
       ++refused;
-      CHECK(text_of(folder / "messages").find(one.name) != std::string::npos);
+      CHECK(text_of(folder / "messages").find(fault_case.name) != std::string::npos);
     }
   }
   if (action == "broken") {
@@ -161,16 +162,16 @@ void try_reads(const Case& one, const std::string& action, long most) {
 }  // namespace
 
 TEST_CASE("a read that fails, is short or is interrupted is never the end of a file") {
-  const Case& one = GENERATE(from_range(std::begin(cases), std::end(cases)));
-  try_reads(one, GENERATE("broken", "shortened", "interrupted"), 2);
+  const Case& fault_case = GENERATE(from_range(std::begin(cases), std::end(cases)));
+  try_reads(fault_case, GENERATE("broken", "shortened", "interrupted"), 2);
 }
 
 TEST_CASE("wherever one of eight reads fails, it is never the end of a file", "[slow]") {
-  const Case& one = GENERATE(from_range(std::begin(cases), std::end(cases)));
-  try_reads(one, GENERATE("broken", "shortened", "interrupted"), 8);
+  const Case& fault_case = GENERATE(from_range(std::begin(cases), std::end(cases)));
+  try_reads(fault_case, GENERATE("broken", "shortened", "interrupted"), 8);
 }
 
 TEST_CASE("wherever a read fails, it is never the end of a file", "[nightly]") {
-  const Case& one = GENERATE(from_range(std::begin(cases), std::end(cases)));
-  try_reads(one, GENERATE("broken", "shortened", "interrupted"), 1'000'000);
+  const Case& fault_case = GENERATE(from_range(std::begin(cases), std::end(cases)));
+  try_reads(fault_case, GENERATE("broken", "shortened", "interrupted"), 1'000'000);
 }

@@ -32,11 +32,11 @@ TEST_CASE("a process has a start time while it lives, and none once it has ended
 TEST_CASE("a pipe carries bytes and is not inherited by programs") {
   std::array<int, 2> ends{};
   REQUIRE(open_pipe(ends));
-  const Descriptor from(ends[0]), to(ends[1]);
+  const Descriptor read_end(ends[0]), write_end(ends[1]);
   for (const int end : ends) CHECK((::fcntl(end, F_GETFD) & FD_CLOEXEC) != 0);
   char byte = 0;
-  CHECK(::write(to.get(), "a", 1) == 1);
-  CHECK(::read(from.get(), &byte, 1) == 1);
+  CHECK(::write(write_end.get(), "a", 1) == 1);
+  CHECK(::read(read_end.get(), &byte, 1) == 1);
   CHECK(byte == 'a');
 }
 

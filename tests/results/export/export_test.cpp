@@ -169,13 +169,13 @@ TEST_CASE("a LAMMPS dump holds a frame a tap, to the last bit") {
 
 TEST_CASE("VTK's format keeps a frame a file and lists several") {
   const std::vector<ExportedFrame> frames = {one_sphere(0), one_sphere(10)};
-  const auto one = exported_files(ExportFormat::vtk, "b/a.vtp", std::span(frames).first(1));
-  REQUIRE(one.size() == 1);
-  CHECK(one[0].path == "b/a.vtp");
+  const auto files = exported_files(ExportFormat::vtk, "b/a.vtp", std::span(frames).first(1));
+  REQUIRE(files.size() == 1);
+  CHECK(files[0].path == "b/a.vtp");
   // The byte count 24 in 8 bytes, then 1.5 three times.
-  CHECK_THAT(one[0].text, Contains("GAAAAAAAAAAAAAAAAAD4PwAAAAAAAPg/AAAAAAAA+D8=\n"));
+  CHECK_THAT(files[0].text, Contains("GAAAAAAAAAAAAAAAAAD4PwAAAAAAAPg/AAAAAAAA+D8=\n"));
   // The byte count 4, then 0.
-  CHECK_THAT(one[0].text, Contains("BAAAAAAAAAAAAAAA\n"));
+  CHECK_THAT(files[0].text, Contains("BAAAAAAAAAAAAAAA\n"));
   const auto several = exported_files(ExportFormat::vtk, "b/a&b.vtp", frames);
   REQUIRE(several.size() == 3);
   CHECK(several[0].path == "b/a&b_tap0.vtp");

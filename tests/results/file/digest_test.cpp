@@ -43,15 +43,15 @@ std::string digest_with(const std::function<void(Study&)>& change_study,
   Study study = synthetic::study({.points = 2, .realizations = 2, .taps = 1, .snapshot_taps = {1}});
   change_study(study);
   const auto record = [&](RealizationId id) {
-    RealizationRecord one;
-    one.status = RealizationStatus::done;
-    one.rows = {1, 2, 3, 4, 0, 0, 7, 8, 9, 10, 0, 0};  // two taps
-    one.snapshots = {{1, std::vector<Vec3>(5, {1, 2, 3}), 0.5, {0.25, 0.75}}};
-    one.state.emplace();
-    one.state->rows = 2;
-    one.state->centres = one.snapshots[0].centres;
-    if (id == RealizationId{1, 1}) change_record(one);
-    return in_memory(one, 6);
+    RealizationRecord realization_record;
+    realization_record.status = RealizationStatus::done;
+    realization_record.rows = {1, 2, 3, 4, 0, 0, 7, 8, 9, 10, 0, 0};  // two taps
+    realization_record.snapshots = {{1, std::vector<Vec3>(5, {1, 2, 3}), 0.5, {0.25, 0.75}}};
+    realization_record.state.emplace();
+    realization_record.state->rows = 2;
+    realization_record.state->centres = realization_record.snapshots[0].centres;
+    if (id == RealizationId{1, 1}) change_record(realization_record);
+    return in_memory(realization_record, 6);
   };
   Provenance provenance;
   provenance.host = host;
@@ -76,9 +76,9 @@ TEST_CASE("a digest depends on values, shape, name and attributes") {
   CHECK(digest_of_numbers(numbers, {30, 100}, {}) != expected);
   CHECK(digest_of_numbers(numbers, {3000}, {}, "number") != expected);
   CHECK(digest_of_numbers(numbers, {3000}, {}, "numbers", "radius") != expected);
-  auto others = numbers;
-  others[1234] = std::nextafter(others[1234], 0);
-  CHECK(digest_of_numbers(others, {3000}, {}) != expected);
+  auto changed = numbers;
+  changed[1234] = std::nextafter(changed[1234], 0);
+  CHECK(digest_of_numbers(changed, {3000}, {}) != expected);
 }
 
 TEST_CASE("a study's digest ignores who computed it and how long it took") {

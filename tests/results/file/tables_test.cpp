@@ -41,7 +41,7 @@ Table sample(const std::string& name, double first = 1.5) {
 void check_same(const Table& a, const Table& b) {
   CHECK(a.name == b.name);
   CHECK(a.notes == b.notes);
-  const auto same = [](const std::vector<Quantity>& p, const std::vector<Quantity>& q) {
+  const auto is_same = [](const std::vector<Quantity>& p, const std::vector<Quantity>& q) {
     REQUIRE(p.size() == q.size());
     for (std::size_t k = 0; k < p.size(); ++k) {
       CHECK(p[k].name == q[k].name);
@@ -52,8 +52,8 @@ void check_same(const Table& a, const Table& b) {
       CHECK(p[k].source == q[k].source);
     }
   };
-  same(a.axes, b.axes);
-  same(a.quantities, b.quantities);
+  is_same(a.axes, b.axes);
+  is_same(a.quantities, b.quantities);
 }
 
 void store(const std::string& path, const std::string& group, const std::vector<Table>& tables) {
@@ -162,9 +162,9 @@ TEST_CASE("tables that contradict themselves are refused before anything is writ
   Table short_of = sample("a");
   std::get<std::vector<double>>(short_of.quantities[0].values).pop_back();
   CHECK_THROWS_AS(store(path, "fits", {short_of}), std::invalid_argument);
-  Table without = sample("a");
-  without.axes.pop_back();
-  CHECK_THROWS_AS(store(path, "fits", {without}), std::invalid_argument);
+  Table bare = sample("a");
+  bare.axes.pop_back();
+  CHECK_THROWS_AS(store(path, "fits", {bare}), std::invalid_argument);
   CHECK(read_tables(path, "fits").empty());
 }
 

@@ -105,12 +105,12 @@ void check_memory_of_fold(bool of_series) {
     const Study study = synthetic::study(sizes);
     const auto store = RunStore::create(path, study, {}, provenance());
     synthetic::run_pending(*store, study, {.checkpoint_every = 1'000'000});
-    const double before = peak_megabytes();
+    const double peak_before = peak_megabytes();
     if (static_cast<double>(parts_bytes(path)) < 1e6 * megabytes_of_the_run)
       throw std::runtime_error("the run is smaller than it should be");
     store->finish();
     digest_of(path);
-    const double grown = peak_megabytes() - before;
+    const double grown = peak_megabytes() - peak_before;
     if (grown > most) throw std::runtime_error("took " + std::to_string(grown) + " MB");
   });
   std::ifstream messages(folder / "messages");
@@ -136,7 +136,7 @@ TEST_CASE("series of many blocks are written as those of one, stopped or killed 
   const auto series = file.series(0);
   for (const std::uint64_t tap : {0, 100'000, 199'999, 200'000}) {
     const TapRow expected = synthetic::expected_row(study, {0, 1}, tap);
-    CHECK(series[0].at(tap, 1) == expected.observables[0]);
+    CHECK(series[0].value(tap, 1) == expected.observables[0]);
     CHECK(file.ensemble(0)[0].count[tap] == 2);
   }
   CHECK(file.record({0, 1}).rows.size() == (sizes.taps + 1) * n_columns);
@@ -158,15 +158,15 @@ TEST_CASE("parts that go on while they are read give what was there") {
   const Study study = synthetic::study(sizes);
   const std::size_t n_columns = study.points[0].n_columns();
   const auto store = RunStore::create(path, study, {}, provenance());
-  const synthetic::Conduct some{
+  const synthetic::Conduct conduct{
       .checkpoint_every = 5000, .steps = 50'000, .leave_without_end = true};
-  synthetic::run(*store, study, {0, 0}, some);
+  synthetic::run(*store, study, {0, 0}, conduct);
   const ResultsFile file(path);
   const auto early = continued(file.realization({0, 0}), path, {file.run_id(), {0, 0}}, n_columns);
   const std::uint64_t n_rows = early->n_rows();
   const std::uint32_t n_segments =
       read_state(state_path(path, {0, 0}), {file.run_id(), {0, 0}}).n_segments;
-  synthetic::run(*store, study, {0, 0}, some);  // its tail becomes a segment
+  synthetic::run(*store, study, {0, 0}, conduct);  // its tail becomes a segment
   REQUIRE(read_state(state_path(path, {0, 0}), {file.run_id(), {0, 0}}).n_segments > n_segments);
   CHECK(early->n_rows() == n_rows);
   CHECK(early->head().state->rows == n_rows);
@@ -205,9 +205,9 @@ double megabytes_of_merge(std::uint32_t n_inputs) {
   });
   REQUIRE(made.code == 0);
   const Ending ending = run_forked({}, folder / "messages", [&] {
-    const double before = peak_megabytes();
+    const double peak_before = peak_megabytes();
     merge_files(inputs, folder / "merged.h5", provenance());
-    std::ofstream(folder / "megabytes") << peak_megabytes() - before;
+    std::ofstream(folder / "megabytes") << peak_megabytes() - peak_before;
   });
   REQUIRE(ending.code == 0);
   double megabytes = 0;

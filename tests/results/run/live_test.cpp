@@ -36,7 +36,7 @@ TEST_CASE("a live run shows the taps of its last checkpoints, and nothing is tou
   // Seven steps of three a tap, a checkpoint every two: tap 0, and two more.
   synthetic::run(*store, study, {0, 0}, {.steps = 7, .leave_without_end = true});
   synthetic::run(*store, study, {1, 2});
-  const std::string before = bytes_of(path);
+  const std::string bytes_before = bytes_of(path);
   const std::size_t n_parts = files_in(parts_folder(path));
   const Content content = GENERATE(Content::everything, Content::without_snapshots);
   {
@@ -53,14 +53,14 @@ TEST_CASE("a live run shows the taps of its last checkpoints, and nothing is tou
       const auto series = live.series(id.point);
       for (std::uint64_t tap = 0; tap < 3; ++tap) {
         const TapRow expected = synthetic::expected_row(study, id, tap);
-        CHECK(series[0].at(tap, id.realization) == expected.observables[0]);
-        CHECK(series[1].at(tap, id.realization) == expected.observables[1]);
+        CHECK(series[0].value(tap, id.realization) == expected.observables[0]);
+        CHECK(series[1].value(tap, id.realization) == expected.observables[1]);
       }
     }
     CHECK(live.ensemble(0)[0].count == std::vector<std::uint32_t>{1, 1, 1});
     CHECK(live.snapshots({1, 2}).size() == (content == Content::everything ? 3 : 0));
   }
-  CHECK(bytes_of(path) == before);
+  CHECK(bytes_of(path) == bytes_before);
   CHECK(files_in(parts_folder(path)) == n_parts);
   ::unsetenv("TMPDIR");
 }
@@ -76,7 +76,7 @@ TEST_CASE("a live run that was resumed shows its old taps and its new ones") {
   CHECK(live.realizations()[4].rows == 9);
   CHECK(live.realizations()[3].rows == 7);
   for (std::uint64_t tap = 0; tap < 9; ++tap) {
-    CHECK(live.series(1)[0].at(tap, 1) ==
+    CHECK(live.series(1)[0].value(tap, 1) ==
           synthetic::expected_row(longer, {1, 1}, tap).observables[0]);
   }
 }

@@ -143,9 +143,9 @@ TEST_CASE("what cannot be merged is refused by name, and nothing is written") {
 TEST_CASE("an existing output is kept unless forced") {
   const TemporaryFolder folder;
   const auto shards = run_shards(folder, 2);
-  const std::string before = digest_of(shards[0]), expected = run_to_end(folder / "one.h5");
+  const std::string digest_before = digest_of(shards[0]), expected = run_to_end(folder / "one.h5");
   CHECK_THROWS_WITH(merge_files(shards, shards[0], provenance()), Contains("exists already"));
-  CHECK(digest_of(shards[0]) == before);
+  CHECK(digest_of(shards[0]) == digest_before);
   merge_files(shards, shards[0], provenance(), true);
   CHECK(digest_of(shards[0]) == expected);
 }

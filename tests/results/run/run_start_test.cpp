@@ -36,14 +36,14 @@ TEST_CASE("a file put in the place of the results during a run is kept, and so a
   std::ofstream(path) << "notes";
   CHECK_THROWS_WITH(store->finish(), Contains("another file was put here") && Contains("is kept"));
   CHECK(std::filesystem::file_size(path) == 5);
-  std::string elsewhere;
+  std::string new_path;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
     const std::string name = entry.path().string();
     if (name.starts_with(path + ".") && !name.ends_with(".parts") && !name.ends_with(".lock"))
-      elsewhere = name;
+      new_path = name;
   }
-  REQUIRE_FALSE(elsewhere.empty());
-  CHECK(digest_of(elsewhere) == expected);
+  REQUIRE_FALSE(new_path.empty());
+  CHECK(digest_of(new_path) == expected);
 }
 
 TEST_CASE("a study that does not fit the disk is refused before it runs") {

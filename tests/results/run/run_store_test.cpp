@@ -24,7 +24,7 @@ std::string straight_digest(const TemporaryFolder& folder, const StudySize& size
   return synthetic::run_to_end(folder / "straight.h5", sizes);
 }
 
-bool same(double a, double b) {
+bool is_same(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
@@ -60,11 +60,11 @@ TEST_CASE("a folded file gives back every row, snapshot and state") {
     for (std::uint32_t r = 0; r < 3; ++r)
       for (std::uint64_t tap = 0; tap <= 6; ++tap) {
         const TapRow row = synthetic::expected_row(study, {p, r}, tap);
-        CHECK(series[0].at(tap, r) == row.observables[0]);
-        CHECK(series[1].at(tap, r) == row.observables[1]);
-        CHECK(series[2].at(tap, r) == diagnostic(row, "sweeps"));
-        CHECK(same(series[3].at(tap, r), diagnostic(row, "acceptance")));
-        CHECK(series[5].at(tap, r) == diagnostic(row, "dropped_offsets"));
+        CHECK(series[0].value(tap, r) == row.observables[0]);
+        CHECK(series[1].value(tap, r) == row.observables[1]);
+        CHECK(series[2].value(tap, r) == diagnostic(row, "sweeps"));
+        CHECK(is_same(series[3].value(tap, r), diagnostic(row, "acceptance")));
+        CHECK(series[5].value(tap, r) == diagnostic(row, "dropped_offsets"));
       }
   }
   const RealizationRecord record = file.record({1, 2});
@@ -98,12 +98,14 @@ TEST_CASE("a folded file gives back every row, snapshot and state") {
   CHECK(last.forces->walls == std::vector<WallForce>{{5.5, {0.5, last.centres[0].x, 0}}});
   std::size_t n_contacts = 0;
   for (std::uint32_t r = 0; r < 3; ++r) {
-    for (const SnapshotRecord& one : file.snapshots({1, r})) {
-      CHECK(one.contacts.size() == static_cast<std::size_t>(5 * one.centres[0].x));
-      n_contacts += one.contacts.size();
-      if (one.contacts.size() < 2) continue;
-      CHECK(one.contacts[1] ==
-            Contact{1, 5, 1e-4 * one.centres[1].x, 2, {0, 0, -1}, {one.centres[1].x, 0.25, 0}});
+    for (const SnapshotRecord& snapshot : file.snapshots({1, r})) {
+      CHECK(snapshot.contacts.size() == static_cast<std::size_t>(5 * snapshot.centres[0].x));
+      n_contacts += snapshot.contacts.size();
+      if (snapshot.contacts.size() < 2) continue;
+      CHECK(
+          snapshot.contacts[1] ==
+          Contact{
+              1, 5, 1e-4 * snapshot.centres[1].x, 2, {0, 0, -1}, {snapshot.centres[1].x, 0.25, 0}});
     }
     CHECK(file.positions({1, r}).at(1).centres == file.snapshots({1, r}).at(1).centres);
   }
@@ -124,7 +126,7 @@ TEST_CASE("any part of a column can be read by itself") {
     REQUIRE(block.size() == 273 * 4);
     for (std::uint64_t tap = 17; tap < 290; ++tap)
       for (std::uint32_t r = 2; r < 6; ++r)
-        CHECK(same(block[(tap - 17) * 4 + r - 2], all[column].at(tap, r)));
+        CHECK(is_same(block[(tap - 17) * 4 + r - 2], all[column].value(tap, r)));
   }
   CHECK(file.block(0, labels[0].name, {5, 5}, {0, 7}).empty());
   CHECK_THROWS_AS(file.block(0, "no_such_column", {0, 1}, {0, 1}), ResultsError);
@@ -150,7 +152,7 @@ TEST_CASE("means, deviations and errors are over realizations") {
   const EnsembleSeries ensemble = file.ensemble(1)[0];
   CHECK(ensemble.label.name == "mean_height");
   for (std::uint64_t tap = 0; tap <= 6; ++tap) {
-    const double a = series.at(tap, 0), b = series.at(tap, 1), c = series.at(tap, 2);
+    const double a = series.value(tap, 0), b = series.value(tap, 1), c = series.value(tap, 2);
     const double mean = (a + b + c) / 3;
     const double squares =
         (a - mean) * (a - mean) + (b - mean) * (b - mean) + (c - mean) * (c - mean);
@@ -206,7 +208,7 @@ TEST_CASE("a gracefully stopped file shows what is there") {
   CHECK(summary.id == RealizationId{1, 1});
   CHECK(summary.status == RealizationStatus::running);
   CHECK(summary.rows == 3);
-  CHECK(file.series(1)[0].at(2, 1) == synthetic::expected_row(study, {1, 1}, 2).observables[0]);
+  CHECK(file.series(1)[0].value(2, 1) == synthetic::expected_row(study, {1, 1}, 2).observables[0]);
   CHECK(file.series(1)[0].n_taps == 3);
   CHECK(file.snapshots({1, 1}).size() == 2);
   CHECK(file.record({1, 1}).state->relaxing);
@@ -252,7 +254,7 @@ TEST_CASE("a failed realization is NaN with its reason, and can be run again") {
     const RealizationSummary failed = file.realizations().at(1);
     CHECK(failed.status == RealizationStatus::failed);
     CHECK(failed.reason == "requested by the test");
-    CHECK(std::isnan(file.series(0)[0].at(0, 1)));
+    CHECK(std::isnan(file.series(0)[0].value(0, 1)));
     CHECK(file.ensemble(0)[0].count[0] == 2);
     CHECK(file.snapshots({0, 1}).empty());
   }

@@ -17,8 +17,8 @@ Packing thinning_packing(double slope, double height) {
   Packing packing{PeriodicBox{100, 100}, {}};
   const double below_top = height - 0.5 * slope * height * height;
   for (int i = 0; i < n; ++i) {
-    const double below = below_top * (i + 0.5) / n;
-    packing.centres.push_back({50, 50, (1 - std::sqrt(1 - 2 * slope * below)) / slope});
+    const double lower_height = below_top * (i + 0.5) / n;
+    packing.centres.push_back({50, 50, (1 - std::sqrt(1 - 2 * slope * lower_height)) / slope});
   }
   return packing;
 }
@@ -59,8 +59,8 @@ TEST_CASE("The error of a gradient is the spread of gradients under noise") {
   double chi_squared = 0, dof = 0;
   for (int i = 0; i < profiles; ++i) {
     const Gradient found = gradient(line(0.6, -0.004, 0.01, random), range);
-    const double off = (found.alpha - 0.002) / found.error;
-    chi_squared += off * off / profiles;
+    const double deviation = (found.alpha - 0.002) / found.error;
+    chi_squared += deviation * deviation / profiles;
     dof = static_cast<double>(found.points) - 2;
   }
   // Student's t: variance dof / (dof - 2), of whose square the variance is about 2.
@@ -83,9 +83,9 @@ TEST_CASE("Smoothing is the mean over the boxcar") {
   CHECK(smooth.values[0] == Approx(first).epsilon(1e-12));
   // A straight line stays one, wherever the boxcar fits.
   const Profile straight = line(0.6, -0.01, 0, random);
-  const Profile same = smoothed(straight, 1.3);
-  for (std::size_t k = 4; k + 4 < same.size(); ++k) {
-    CHECK(same.values[k] == Approx(straight.values[k]).epsilon(1e-12));
+  const Profile smoothed_profile = smoothed(straight, 1.3);
+  for (std::size_t k = 4; k + 4 < smoothed_profile.size(); ++k) {
+    CHECK(smoothed_profile.values[k] == Approx(straight.values[k]).epsilon(1e-12));
   }
 }
 

@@ -95,9 +95,10 @@ std::size_t most_places(const Container& container, bool rows_along_y) {
       std::size_t places = 0;
       for (int j = -14; j < 14; ++j) {
         for (int i = -14; i < 14; ++i) {
-          const double along = boundary.axis() + i + 0.5 * (j % 2 != 0) + a / 60.0;
+          const double longitudinal = boundary.axis() + i + 0.5 * (j % 2 != 0) + a / 60.0;
           const double across = boundary.axis() + row * (j + 2 * b / 60.0);
-          const Vec3 place = rows_along_y ? Vec3{across, along, 0.5} : Vec3{along, across, 0.5};
+          const Vec3 place =
+              rows_along_y ? Vec3{across, longitudinal, 0.5} : Vec3{longitudinal, across, 0.5};
           places += boundary_depth(boundary, place) <= 1e-9;
         }
       }
@@ -120,10 +121,11 @@ TEST_CASE("A full layer between walls and in a tube has the filling 1") {
                                      {Cylinder{5}},
                                      {Cylinder{5.6}},
                                      {Cylinder{9.3}}}) {
-    const auto one = static_cast<double>(layers({container, {{0.5, 0.5, 0.5}}})[0].filling);
+    const auto filling = static_cast<double>(layers({container, {{0.5, 0.5, 0.5}}})[0].filling);
     CAPTURE(width_x(container), width_y(container));
-    CHECK(1 / one == Approx(std::max(most_places(container, false), most_places(container, true)))
-                         .epsilon(1e-9));
+    CHECK(1 / filling ==
+          Approx(std::max(most_places(container, false), most_places(container, true)))
+              .epsilon(1e-9));
   }
   // Between plates a row along them closes over the period: one row, three of them, and five rows
   // of 6 after which rows across the gap hold 5 and 4 by turns.

@@ -53,8 +53,8 @@ inline double misfit_by_sampling(const Packing& packing, const Profile& profile,
   double misfit = 0;
   for (std::size_t k = 0; k < profile.size(); ++k) {
     const double phi = profile.values[k];
-    const double off = hits[k] / numbers[k] - phi;
-    misfit += off * off / (phi * (1 - phi) / numbers[k]);
+    const double deviation = hits[k] / numbers[k] - phi;
+    misfit += deviation * deviation / (phi * (1 - phi) / numbers[k]);
   }
   return misfit;
 }

@@ -174,8 +174,8 @@ TEST_CASE("Plane cuts are what random points on them find") {
     if (fraction == 0) return;
     int hits = 0;
     for (int i = 0; i < points; ++i) hits += is_solid(packing, point());
-    const double off = static_cast<double>(hits) / points - fraction;
-    misfit += off * off / (fraction * (1 - fraction) / points);
+    const double deviation = static_cast<double>(hits) / points - fraction;
+    misfit += deviation * deviation / (fraction * (1 - fraction) / points);
     ++cuts;
   };
   const auto anywhere = [&](double low, double high) {

@@ -17,18 +17,18 @@ using namespace jostle;
 namespace {
 
 // Tanh-sinh quadrature, which does not mind what happens at the ends.
-double integral(double from, double to, const std::function<double(double)>& function) {
+double integral(double lower, double upper, const std::function<double(double)>& function) {
   constexpr double step = 1.0 / 16;
   double sum = 0;
   for (int k = -56; k <= 56; ++k) {
     const double s = 0.5 * std::numbers::pi * std::sinh(k * step);
     // The distance from the nearer end, without cancellation.
-    const double from_end = (to - from) / (1 + std::exp(2 * std::abs(s)));
-    const double x = s < 0 ? from + from_end : to - from_end;
+    const double from_end = (upper - lower) / (1 + std::exp(2 * std::abs(s)));
+    const double x = s < 0 ? lower + from_end : upper - from_end;
     const double weight = 0.5 * std::numbers::pi * std::cosh(k * step) / std::cosh(s);
     sum += weight / std::cosh(s) * function(x);
   }
-  return to > from ? sum * step * (to - from) / 2 : 0;
+  return upper > lower ? sum * step * (upper - lower) / 2 : 0;
 }
 
 double disc_radius(double z) {
@@ -142,23 +142,23 @@ TEST_CASE("A corner of three planes cuts off what its sections add up to") {
         return std::max(0.0, half - std::max(b, -half));
       };
       const double turn = std::sqrt(std::max(0.0, r * r - b * b));
-      double sum = 0, from = std::max(a, -r);
+      double sum = 0, lower = std::max(a, -r);
       for (const double end : {-turn, turn, r}) {
-        const double to = std::max(from, std::min(end, r));
-        sum += integral(from, to, chord);
-        from = to;
+        const double upper = std::max(lower, std::min(end, r));
+        sum += integral(lower, upper, chord);
+        lower = upper;
       }
       return sum;
     };
-    double sum = 0, from = c;
+    double sum = 0, lower = c;
     std::vector<double> ends = {disc_radius(a), disc_radius(b),
                                 std::sqrt(std::max(0.0, 0.25 - a * a - b * b)), 0.5};
     for (std::size_t k = 0; k < 3; ++k) ends.push_back(-ends[k]);
     std::ranges::sort(ends);
     for (const double end : ends) {
-      const double to = std::max(from, end);
-      sum += integral(from, to, area);
-      from = to;
+      const double upper = std::max(lower, end);
+      sum += integral(lower, upper, area);
+      lower = upper;
     }
     CHECK(sphere_volume_beyond({a, b, c}) == Approx(sum).margin(1e-12).epsilon(0));
   }

@@ -21,9 +21,9 @@ TEST_CASE("The overlap of a footprint is that of random points", "[statistics]")
       r.x += dx;
       r.y += dy;
       r = into_periods(boundary, r);
-      const bool within = r.x >= 0 && r.y >= 0 && r.x <= boundary.width_x &&
-                          r.y <= boundary.width_y && clear_of_boundaries(boundary, r);
-      inside += within ? 1 : 0;
+      const bool is_inside = r.x >= 0 && r.y >= 0 && r.x <= boundary.width_x &&
+                             r.y <= boundary.width_y && clear_of_boundaries(boundary, r);
+      inside += is_inside ? 1 : 0;
     }
     const double share = footprint.overlap(dx, dy);
     CAPTURE(dx, dy);

@@ -15,10 +15,11 @@ using namespace jostle;
 namespace {
 
 // A sphere and those around it, far from any wall: the bonds of sphere 0.
-BondOrder order_of(const std::vector<Vec3>& around) {
+BondOrder order_of(const std::vector<Vec3>& neighbours) {
   Packing packing{WalledBox{40, 40}, {{20, 20, 20}}};
-  for (const Vec3& way : around) packing.centres.push_back({20 + way.x, 20 + way.y, 20 + way.z});
-  return bond_order(nearest_neighbours(packing, static_cast<std::uint32_t>(around.size())))[0];
+  for (const Vec3& way : neighbours)
+    packing.centres.push_back({20 + way.x, 20 + way.y, 20 + way.z});
+  return bond_order(nearest_neighbours(packing, static_cast<std::uint32_t>(neighbours.size())))[0];
 }
 
 std::vector<Vec3> icosahedron() {
@@ -33,14 +34,14 @@ std::vector<Vec3> icosahedron() {
 }
 
 std::vector<Vec3> bcc_neighbours() {
-  std::vector<Vec3> around;
+  std::vector<Vec3> neighbours;
   for (const double a : {-0.6, 0.6}) {
-    around.insert(around.end(), {{2 * a, 0, 0}, {0, 2 * a, 0}, {0, 0, 2 * a}});
+    neighbours.insert(neighbours.end(), {{2 * a, 0, 0}, {0, 2 * a, 0}, {0, 0, 2 * a}});
     for (const double b : {-0.6, 0.6}) {
-      for (const double c : {-0.6, 0.6}) around.push_back({a, b, c});
+      for (const double c : {-0.6, 0.6}) neighbours.push_back({a, b, c});
     }
   }
-  return around;
+  return neighbours;
 }
 
 Vec3 turned(Vec3 r) {
@@ -114,30 +115,30 @@ TEST_CASE("q4 and q6 of any packing are those of the library's spherical harmoni
     const std::vector<BondOrder> orders = bond_order(table);
     REQUIRE(orders.size() == 300);
     for (std::size_t i = 0; i < table.size(); ++i) {
-      if (table.of(i).empty()) {
+      if (table.neighbours_of(i).empty()) {
         CHECK(std::isnan(orders[i].q6));
         CHECK(std::isnan(orders[i].w6));
         continue;
       }
-      CHECK(orders[i].q4 == Approx(steinhardt(table.of(i), 4)).margin(1e-10));
-      CHECK(orders[i].q6 == Approx(steinhardt(table.of(i), 6)).margin(1e-10));
+      CHECK(orders[i].q4 == Approx(steinhardt(table.neighbours_of(i), 4)).margin(1e-10));
+      CHECK(orders[i].q6 == Approx(steinhardt(table.neighbours_of(i), 6)).margin(1e-10));
     }
   }
 }
 
 TEST_CASE("Bond order does not depend on how a packing is turned") {
   Packing packing = random_points(WalledBox{9, 9}, 9, 250);
-  const std::vector<BondOrder> before = bond_order(nearest_neighbours(packing));
+  const std::vector<BondOrder> order_before = bond_order(nearest_neighbours(packing));
   packing.container = WalledBox{60, 60};
   for (Vec3& r : packing.centres) r = turned(r) + Vec3{30, 30, 30};
-  const std::vector<BondOrder> after = bond_order(nearest_neighbours(packing));
-  for (std::size_t i = 0; i < before.size(); ++i) check(after[i], before[i]);
+  const std::vector<BondOrder> order_after = bond_order(nearest_neighbours(packing));
+  for (std::size_t i = 0; i < order_before.size(); ++i) check(order_after[i], order_before[i]);
 }
 
 TEST_CASE("A single bond has q 1, and as w the 3j symbol of three zeros") {
   // Along z only q_l0 is there: w_l = (l l l; 0 0 0), whose squares are 18 / 1001 and 400 / 46189.
-  const BondOrder one = order_of({{0.6, 0, 0.8}}), two = order_of({{0, 0, 1}, {0, 0, -1}});
+  const BondOrder single = order_of({{0.6, 0, 0.8}}), two = order_of({{0, 0, 1}, {0, 0, -1}});
   const BondOrder expected{1, 1, std::sqrt(18.0 / 1001), -std::sqrt(400.0 / 46189)};
-  check(one, expected);
+  check(single, expected);
   check(two, expected);
 }

@@ -26,8 +26,8 @@ std::vector<bool> rattlers_of_all_pairs(const Packing& packing, double tolerance
       unsigned contacts = packing.centres[i].z <= 0.5 + tolerance ? 1 : 0;
       for (std::size_t j = 0; j < rattler.size(); ++j) {
         if (i == j || rattler[j]) continue;
-        const Vec3 apart = separation(boundary, packing.centres[i], packing.centres[j]);
-        contacts += std::sqrt(norm_squared(apart)) <= 1 + tolerance ? 1 : 0;
+        const Vec3 offset = separation(boundary, packing.centres[i], packing.centres[j]);
+        contacts += std::sqrt(norm_squared(offset)) <= 1 + tolerance ? 1 : 0;
       }
       if (contacts < least) rattler[i] = changed = true;
     }
@@ -39,9 +39,9 @@ std::vector<bool> rattlers_of_all_pairs(const Packing& packing, double tolerance
 /// in proportion to the area (1 + h)^2 of their shell.
 std::vector<double> drawn_gaps(double gamma, double low, double high, int n, RandomStream& random) {
   std::vector<double> gaps;
-  const double a = 1 - gamma, from = std::pow(low, a), to = std::pow(high, a);
+  const double a = 1 - gamma, lower = std::pow(low, a), upper = std::pow(high, a);
   while (gaps.size() < static_cast<std::size_t>(n)) {
-    const double gap = std::pow(from + random.uniform() * (to - from), 1 / a);
+    const double gap = std::pow(lower + random.uniform() * (upper - lower), 1 / a);
     if (random.uniform() < std::pow((1 + gap) / (1 + high), 2)) gaps.push_back(gap);
   }
   return gaps;
@@ -125,10 +125,10 @@ TEST_CASE("Intervals of the mean exponent hold the truth", "[statistics]") {
         sum += gamma - jammed;
         squares += (gamma - jammed) * (gamma - jammed);
       }
-      const double off = std::abs(sum / packings);
-      const double error = std::sqrt((squares / packings - off * off) / (packings - 1));
-      in_68 += off <= t_68 * error ? 1 : 0;
-      in_95 += off <= t_95 * error ? 1 : 0;
+      const double deviation = std::abs(sum / packings);
+      const double error = std::sqrt((squares / packings - deviation * deviation) / (packings - 1));
+      in_68 += deviation <= t_68 * error ? 1 : 0;
+      in_95 += deviation <= t_95 * error ? 1 : 0;
     }
     std::printf("exponent of gaps, %2d packings: %.1f %% in 68.3 %%, %.1f %% in 95 %%\n", packings,
                 100.0 * in_68 / ensembles, 100.0 * in_95 / ensembles);
@@ -170,10 +170,10 @@ TEST_CASE("The fraction of rattlers at a tolerance is that of its curve at the s
   const auto found = measure(reference_deposit(), settings, StreamKey{}).at(0);
   const auto& gaps = std::get<std::vector<double>>(found.places[0].values);
   const MeasuredQuantity& curve = *found.find("rattlers_of_gap");
-  const auto at = std::ranges::min_element(
+  const auto place = std::ranges::min_element(
       gaps, {}, [&](double gap) { return std::abs(gap - settings.gaps->tolerance); });
-  REQUIRE(*at == Approx(settings.gaps->tolerance).epsilon(1e-9));
-  CHECK(curve.values[static_cast<std::size_t>(at - gaps.begin())] ==
+  REQUIRE(*place == Approx(settings.gaps->tolerance).epsilon(1e-9));
+  CHECK(curve.values[static_cast<std::size_t>(place - gaps.begin())] ==
         found.find("rattlers")->values[0]);
   CHECK(curve.with_packings);
   // No gap gives a chain a backbone: it has no fraction of rattlers at any.
@@ -198,7 +198,8 @@ TEST_CASE("The part gaps counts contacts against the gap, and the region alone")
   for (std::size_t i = 0; i < near.size(); ++i) {
     if (!region.contains(packing.container, packing.centres[i])) continue;
     spheres += 1;
-    for (const Neighbour& one : near.of(i)) neighbours += one.distance_squared <= 1.21 ? 1 : 0;
+    for (const Neighbour& neighbour : near.neighbours_of(i))
+      neighbours += neighbour.distance_squared <= 1.21 ? 1 : 0;
   }
   const auto& gaps = std::get<std::vector<double>>(parts[0].places[0].values);
   for (std::size_t k = 0; k < gaps.size(); ++k) {
@@ -221,8 +222,8 @@ TEST_CASE("Gaps of an ideal gas have no exponent, also where sides cut the shell
     std::vector<double> gaps, weights;
     for (std::size_t i = 0; i < near.size(); ++i) {
       if (gas.centres[i].z > 9) continue;
-      for (const Neighbour& one : near.of(i)) {
-        const double distance = std::sqrt(one.distance_squared);
+      for (const Neighbour& neighbour : near.neighbours_of(i)) {
+        const double distance = std::sqrt(neighbour.distance_squared);
         gaps.push_back(distance - 1);
         weights.push_back(1 / part(gas.centres[i], distance));
       }
@@ -230,12 +231,12 @@ TEST_CASE("Gaps of an ideal gas have no exponent, also where sides cut the shell
     exponents.push_back(gap_exponent(gaps, 0.01, 0.5, weights));
     unweighted.push_back(gap_exponent(gaps, 0.01, 0.5));
   }
-  double mean = 0, squares = 0, without = 0;
+  double mean = 0, squares = 0, n_without = 0;
   for (const double x : exponents) mean += x / n_gases;
   for (const double x : exponents) squares += (x - mean) * (x - mean);
-  for (const double x : unweighted) without += x / n_gases;
+  for (const double x : unweighted) n_without += x / n_gases;
   const double error = std::sqrt(squares / (n_gases * (n_gases - 1.0)));
-  CAPTURE(mean, error, without);
-  CHECK(without > 5 * error);  // shells that grow out of the container
+  CAPTURE(mean, error, n_without);
+  CHECK(n_without > 5 * error);  // shells that grow out of the container
   CHECK(std::abs(mean) < 3 * error);
 }

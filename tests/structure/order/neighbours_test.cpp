@@ -32,8 +32,8 @@ std::vector<Neighbour> by_brute_force(const Packing& packing, std::uint32_t i, d
       }
     }
   }
-  std::sort(found.begin(), found.end(), [](const Neighbour& one, const Neighbour& other) {
-    return one.distance_squared < other.distance_squared;
+  std::sort(found.begin(), found.end(), [](const Neighbour& first, const Neighbour& second) {
+    return first.distance_squared < second.distance_squared;
   });
   return found;
 }
@@ -41,11 +41,12 @@ std::vector<Neighbour> by_brute_force(const Packing& packing, std::uint32_t i, d
 // Without the sphere's own images, and those beyond 1.5 of spheres that are there already.
 std::vector<Neighbour> spheres_only(const std::vector<Neighbour>& all, std::uint32_t i) {
   std::vector<Neighbour> found;
-  for (const Neighbour& one : all) {
-    const bool repeats = std::any_of(found.begin(), found.end(), [&](const Neighbour& other) {
-      return other.sphere == one.sphere;
+  for (const Neighbour& neighbour : all) {
+    const bool repeats = std::any_of(found.begin(), found.end(), [&](const Neighbour& copy) {
+      return copy.sphere == neighbour.sphere;
     });
-    if (one.sphere != i && (!repeats || one.distance_squared <= 1.5 * 1.5)) found.push_back(one);
+    if (neighbour.sphere != i && (!repeats || neighbour.distance_squared <= 1.5 * 1.5))
+      found.push_back(neighbour);
   }
   return found;
 }
@@ -64,8 +65,8 @@ std::vector<Key> keys(std::span<const Neighbour> neighbours) {
 
 bool nearest_first(std::span<const Neighbour> neighbours) {
   return std::is_sorted(neighbours.begin(), neighbours.end(),
-                        [](const Neighbour& one, const Neighbour& other) {
-                          return one.distance_squared < other.distance_squared;
+                        [](const Neighbour& first, const Neighbour& second) {
+                          return first.distance_squared < second.distance_squared;
                         });
 }
 
@@ -97,8 +98,8 @@ TEST_CASE("Neighbours by cells are those of all pairs and images, the nearest fi
   const NeighbourTable table = neighbours_within(packing, cut);
   REQUIRE(table.size() == packing.centres.size());
   for (std::uint32_t i = 0; i < table.size(); ++i) {
-    CHECK(nearest_first(table.of(i)));
-    CHECK(keys(table.of(i)) == keys(by_brute_force(packing, i, cut)));
+    CHECK(nearest_first(table.neighbours_of(i)));
+    CHECK(keys(table.neighbours_of(i)) == keys(by_brute_force(packing, i, cut)));
   }
 }
 
@@ -110,10 +111,11 @@ TEST_CASE("The nearest neighbours are the first of all pairs and images") {
   for (std::uint32_t i = 0; i < table.size(); ++i) {
     std::vector<Neighbour> expected = spheres_only(by_brute_force(packing, i, 1e9), i);
     expected.resize(12);
-    CHECK(nearest_first(table.of(i)));
-    CHECK(table.of(i)[11].distance_squared == Approx(expected[11].distance_squared).epsilon(1e-12));
+    CHECK(nearest_first(table.neighbours_of(i)));
+    CHECK(table.neighbours_of(i)[11].distance_squared ==
+          Approx(expected[11].distance_squared).epsilon(1e-12));
     expected.pop_back();  // the other of two images as far may be the last
-    CHECK(keys(table.of(i).first(11)) == keys(expected));
+    CHECK(keys(table.neighbours_of(i).first(11)) == keys(expected));
   }
 }
 
@@ -129,8 +131,8 @@ TEST_CASE("The nearest neighbours of spheres far apart are found among periods t
   for (std::uint32_t i = 0; i < table.size(); ++i) {
     std::vector<Neighbour> expected = spheres_only(by_brute_force(packing, i, 1e9), i);
     expected.resize(12);
-    CHECK(nearest_first(table.of(i)));
-    CHECK(keys(table.of(i)) == keys(expected));
+    CHECK(nearest_first(table.neighbours_of(i)));
+    CHECK(keys(table.neighbours_of(i)) == keys(expected));
   }
 }
 
@@ -138,9 +140,9 @@ TEST_CASE("Where there are fewer spheres than asked for, all are neighbours") {
   const Packing three{WalledBox{20, 20}, {{1, 1, 0.5}, {19, 19, 9}, {5, 1, 0.5}}};
   const NeighbourTable table = nearest_neighbours(three, 12);
   REQUIRE(table.size() == 3);
-  CHECK(table.of(0)[0].sphere == 2);
-  CHECK(table.of(0)[1].sphere == 1);
-  CHECK(table.of(1).size() == 2);
+  CHECK(table.neighbours_of(0)[0].sphere == 2);
+  CHECK(table.neighbours_of(0)[1].sphere == 1);
+  CHECK(table.neighbours_of(1).size() == 2);
 
   const Packing none{WalledBox{20, 20}, {}};
   CHECK(nearest_neighbours(none, 12).size() == 0);
@@ -148,13 +150,13 @@ TEST_CASE("Where there are fewer spheres than asked for, all are neighbours") {
 
   // Images are no other spheres.
   const Packing alone{PeriodicBox{4, 5}, {{0, 0, 0.5}}};
-  CHECK(nearest_neighbours(alone, 3).of(0).empty());
+  CHECK(nearest_neighbours(alone, 3).neighbours_of(0).empty());
   const Packing two{FullyPeriodicBox{4, 5, 6}, {{0, 0, 0}, {1, 1, 0.5}}};
-  REQUIRE(nearest_neighbours(two).of(0).size() == 1);
-  CHECK(nearest_neighbours(two).of(0)[0].distance_squared == 2.25);
+  REQUIRE(nearest_neighbours(two).neighbours_of(0).size() == 1);
+  CHECK(nearest_neighbours(two).neighbours_of(0)[0].distance_squared == 2.25);
   // In a narrow box a sphere can touch another one from both sides.
-  const Packing between{FullyPeriodicBox{2.1, 9, 9}, {{0, 0, 0}, {1.05, 0, 0}}};
-  CHECK(nearest_neighbours(between).of(0).size() == 2);
+  const Packing packing{FullyPeriodicBox{2.1, 9, 9}, {{0, 0, 0}, {1.05, 0, 0}}};
+  CHECK(nearest_neighbours(packing).neighbours_of(0).size() == 2);
 }
 
 TEST_CASE("A centre just at the cut is a neighbour, also across the seam and on cells' bounds") {
@@ -166,5 +168,5 @@ TEST_CASE("A centre just at the cut is a neighbour, also across the seam and on 
   const auto [cut, expected] =
       GENERATE(table<double, std::size_t>({{0.5, 6}, {1, 32}, {1.5, 122}, {2.5, 514}}));
   const NeighbourTable table = neighbours_within(packing, cut);
-  for (std::size_t i = 0; i < table.size(); ++i) CHECK(table.of(i).size() == expected);
+  for (std::size_t i = 0; i < table.size(); ++i) CHECK(table.neighbours_of(i).size() == expected);
 }

@@ -124,13 +124,13 @@ TEST_CASE("Beds poured between walls and in tubes have the g(r) of one without s
     }
     return sum->g();
   };
-  const std::vector<double> without = pooled(PeriodicBox{8, 8}, 700);
-  const std::vector<std::vector<double>> beside = {pooled(WalledBox{7, 7}, 500),
+  const std::vector<double> periodic = pooled(PeriodicBox{8, 8}, 700);
+  const std::vector<std::vector<double>> walled = {pooled(WalledBox{7, 7}, 500),
                                                    pooled(Cylinder{9.3}, 800)};
-  for (std::size_t k = 2; k < without.size(); ++k) {
-    for (const std::vector<double>& g : beside) {
-      CAPTURE(k, without[k], g[k]);
-      CHECK(std::abs(g[k] - without[k]) < 0.03);
+  for (std::size_t k = 2; k < periodic.size(); ++k) {
+    for (const std::vector<double>& g : walled) {
+      CAPTURE(k, periodic[k], g[k]);
+      CHECK(std::abs(g[k] - periodic[k]) < 0.03);
     }
   }
 }
@@ -146,8 +146,8 @@ TEST_CASE("In a fully periodic box all shells are whole and the density is exact
   REQUIRE(pairs.counts.size() == 21);
   // Shells of fcc: 12 at 1, 6 at sqrt 2, 24 at sqrt 3, 12 at 2.
   for (std::size_t k = 0; k < 21; ++k) {
-    const std::uint64_t around = k == 10 ? 12 : k == 14 ? 6 : k == 17 ? 24 : k == 20 ? 12 : 0;
-    CHECK(pairs.counts[k] == around * fcc.centres.size());
+    const std::uint64_t n_neighbours = k == 10 ? 12 : k == 14 ? 6 : k == 17 ? 24 : k == 20 ? 12 : 0;
+    CHECK(pairs.counts[k] == n_neighbours * fcc.centres.size());
     CHECK(pairs.found[k] == static_cast<double>(pairs.counts[k]));
     // A sphere has all but itself around it.
     CHECK(pairs.expected[k] ==
@@ -187,18 +187,18 @@ TEST_CASE("The density of a crystal does not depend on where a region cuts its l
 
 TEST_CASE("Pooled pair correlations are those of all counts") {
   const PairCorrelationSettings settings{.r_max = 3, .bin_width = 0.1};
-  const PairCorrelation one =
+  const PairCorrelation correlation =
       pair_correlation(random_points(FullyPeriodicBox{8, 8, 8}, 8, 300, 1), settings);
   PairCorrelation sum =
       pair_correlation(random_points(FullyPeriodicBox{8, 8, 8}, 8, 600, 2), settings);
   const PairCorrelation two = sum;
-  sum += one;
+  sum += correlation;
   CHECK(sum.n_centres == 900);
-  CHECK(sum.density == Approx((300 * one.density + 600 * two.density) / 900));
+  CHECK(sum.density == Approx((300 * correlation.density + 600 * two.density) / 900));
   for (std::size_t k = 0; k < sum.counts.size(); ++k) {
-    CHECK(sum.g()[k] == Approx(static_cast<double>(one.counts[k] + two.counts[k]) /
-                               (one.expected[k] + two.expected[k])));
-    CHECK(sum.shells[k] == Approx(one.shells[k] + two.shells[k]));
+    CHECK(sum.g()[k] == Approx(static_cast<double>(correlation.counts[k] + two.counts[k]) /
+                               (correlation.expected[k] + two.expected[k])));
+    CHECK(sum.shells[k] == Approx(correlation.shells[k] + two.shells[k]));
   }
 }
 

@@ -24,22 +24,22 @@ struct PooledGases {
 
 PooledGases pooled_gases(const std::vector<PairCorrelation>& packings) {
   const std::size_t n = packings.size(), n_bins = packings[0].r.size();
-  PooledGases out{packings[0].r, {}, {}};
+  PooledGases pooled{packings[0].r, {}, {}};
   for (std::size_t k = 0; k < n_bins; ++k) {
     double found = 0, expected = 0, sum = 0, squares = 0;
-    for (const PairCorrelation& one : packings) {
-      found += one.found[k];
-      expected += one.expected[k];
+    for (const PairCorrelation& correlation : packings) {
+      found += correlation.found[k];
+      expected += correlation.expected[k];
     }
-    for (const PairCorrelation& one : packings) {
-      const double left = (found - one.found[k]) / (expected - one.expected[k]);
+    for (const PairCorrelation& correlation : packings) {
+      const double left = (found - correlation.found[k]) / (expected - correlation.expected[k]);
       sum += left / static_cast<double>(n);
       squares += left * left / static_cast<double>(n);
     }
-    out.g.push_back(found / expected);
-    out.error.push_back(std::sqrt((squares - sum * sum) * static_cast<double>(n - 1)));
+    pooled.g.push_back(found / expected);
+    pooled.error.push_back(std::sqrt((squares - sum * sum) * static_cast<double>(n - 1)));
   }
-  return out;
+  return pooled;
 }
 
 /// Centres by height in bins of 0.2 from 0.4 on, of six beds of 400 spheres poured into a tube 9.3
@@ -71,8 +71,8 @@ Packing hard_spheres(const Container& container, double height, unsigned n, std:
   Packing spheres{container, {}};
   for (const Vec3& r : tried.centres) {
     bool free = spheres.centres.size() < n;
-    for (const Vec3& other : spheres.centres) {
-      free = free && norm_squared(separation(Boundary(container), r, other)) >= 1;
+    for (const Vec3& neighbour : spheres.centres) {
+      free = free && norm_squared(separation(Boundary(container), r, neighbour)) >= 1;
     }
     if (free) spheres.centres.push_back(r);
   }
@@ -138,28 +138,28 @@ TEST_CASE("Few hard spheres have the g of pairs counted by brute force", "[stati
     }
   }
   // Pairs within gases over those of a sphere of one gas and one of another.
-  std::vector<double> within(n_bins, 0.0), across(n_bins, 0.0);
-  const auto count = [&](const Packing& one, const Packing& other, std::vector<double>& bins) {
-    for (const Vec3& a : one.centres) {
-      for (const Vec3& b : other.centres) {
+  std::vector<double> own_pairs(n_bins, 0.0), across(n_bins, 0.0);
+  const auto count = [&](const Packing& first, const Packing& second, std::vector<double>& bins) {
+    for (const Vec3& a : first.centres) {
+      for (const Vec3& b : second.centres) {
         const auto bin = static_cast<std::size_t>(
             std::sqrt(norm_squared(separation(Boundary(container), a, b))) / bin_width);
         if (&a != &b && bin < n_bins) bins[bin] += 1;
       }
     }
   };
-  constexpr std::size_t others = 10;
+  constexpr std::size_t n_others = 10;
   for (std::size_t i = 0; i < gases.size(); ++i) {
-    count(gases[i], gases[i], within);
-    for (std::size_t k = 1; k <= others; ++k) {
+    count(gases[i], gases[i], own_pairs);
+    for (std::size_t k = 1; k <= n_others; ++k) {
       count(gases[i], gases[(i + k) % gases.size()], across);
     }
   }
   const PooledGases found = pooled_gases(measured);
   CHECK(found.g[1] == 0);
   for (std::size_t k = 2; k < n_bins; ++k) {
-    const double pairs = n * (n - 1.0) / n / n * across[k] / others, truth = within[k] / pairs;
-    const double error = std::hypot(found.error[k], 2 * std::sqrt(within[k] / 2) / pairs);
+    const double pairs = n * (n - 1.0) / n / n * across[k] / n_others, truth = own_pairs[k] / pairs;
+    const double error = std::hypot(found.error[k], 2 * std::sqrt(own_pairs[k] / 2) / pairs);
     CAPTURE(n, found.r[k], found.g[k], found.error[k], truth);
     CHECK(std::abs(found.g[k] - truth) <= 3 * error);
   }

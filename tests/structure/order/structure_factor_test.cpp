@@ -55,7 +55,7 @@ void stir(Packing& packing, int sweeps, double step, RandomStream& random) {
   const Boundary boundary(packing.container);
   auto& centres = packing.centres;
   for (std::size_t trial = 0; trial < static_cast<std::size_t>(sweeps) * centres.size(); ++trial) {
-    const std::size_t i = random.below(centres.size());
+    const std::size_t i = random.integer_below(centres.size());
     const auto shift = [&] { return step * (2 * random.uniform() - 1); };
     const Vec3 moved =
         wrapped(boundary, {centres[i].x + shift(), centres[i].y + shift(), centres[i].z + shift()});
@@ -79,8 +79,8 @@ TEST_CASE("S is the sum over spheres, wave vector by wave vector") {
   for (int axis = 0; axis < 3; ++axis) {
     std::complex<double> sum = 0;
     for (const Vec3& r : packing.centres) {
-      const double along[3] = {r.x, r.y, r.z};
-      sum += std::polar(1.0, ks[axis] * along[axis]);
+      const double coordinates[3] = {r.x, r.y, r.z};
+      sum += std::polar(1.0, ks[axis] * coordinates[axis]);
     }
     const auto bin = static_cast<std::size_t>(ks[axis] / 0.01);
     CHECK(found.modes[bin] == 1);
@@ -142,12 +142,12 @@ TEST_CASE("Wave vectors that the taper cannot resolve are left out") {
 
 TEST_CASE("A crystal has Bragg peaks and nothing else") {
   const Packing crystal = stacked_layers("ABCABCABCABC");
-  const StructureFactor below =
+  const StructureFactor lower_factor =
       structure_factor(crystal, {.k_max = 7.2, .bin_width = 0.1, .modes = 1'000'000}, {0.5, 9, 0});
   for (std::size_t b = 0; b < 70; ++b) {
-    if (below.modes[b] > 0) CHECK(below.s[b] == Approx(0).margin(1e-20));
+    if (lower_factor.modes[b] > 0) CHECK(lower_factor.s[b] == Approx(0).margin(1e-20));
   }
-  CHECK(below.s_0_of_squares == Approx(0).margin(1e-20));
+  CHECK(lower_factor.s_0_of_squares == Approx(0).margin(1e-20));
   // The first peak of fcc lies beyond, at 2 pi sqrt(3) over the cell's edge sqrt(2).
   const StructureFactor beyond =
       structure_factor(crystal, {.k_max = 8, .bin_width = 0.5, .modes = 1'000'000}, {0.5, 9, 0});

@@ -16,7 +16,7 @@ constexpr double half_root_2 = 0.5 * std::numbers::sqrt2;
 constexpr HoleKind kinds[] = {HoleKind::tetrahedron, HoleKind::half_octahedron,
                               HoleKind::trigonal_prism, HoleKind::tetragonal_dodecahedron,
                               HoleKind::archimedean_antiprism};
-constexpr Region everywhere{0, 1000, 0};
+constexpr Region whole_bed{0, 1000, 0};
 
 // Corners of the regular holes, edges 1, somewhere about the origin.
 
@@ -90,7 +90,7 @@ Packing shaken(Packing packing, double amplitude, std::uint64_t trial) {
 }
 
 HoleTable table_of(const Packing& packing) {
-  return hole_table(bernal_holes(packing), packing.container, everywhere);
+  return hole_table(bernal_holes(packing), packing.container, whole_bed);
 }
 
 using Counts = std::array<std::uint64_t, 5>;
@@ -160,7 +160,7 @@ TEST_CASE("Delaunay tetrahedra fill a periodic box") {
   const Packing points = poisson_points();
   const auto* box = std::get_if<FullyPeriodicBox>(&points.container);
   double volume = 0;
-  for (const auto& one : delaunay_tetrahedra(points)) volume += one.volume;
+  for (const auto& tetrahedron : delaunay_tetrahedra(points)) volume += tetrahedron.volume;
   CHECK(volume == Approx(box->width_x * box->width_y * box->height).epsilon(1e-10));
   CHECK_THROWS_WITH(delaunay_tetrahedra({PeriodicBox{3, 8}, {{1, 1, 1}}}),
                     Catch::Matchers::Contains("at least 4 diameters"));
@@ -178,7 +178,7 @@ TEST_CASE("Holes of a deposit share out its space") {
   const Packing deposit = reference_deposit();
   const auto holes = bernal_holes(deposit);
   double tetrahedra = 0, slices = 0;
-  for (const auto& one : delaunay_tetrahedra(deposit)) tetrahedra += one.volume;
+  for (const auto& tetrahedron : delaunay_tetrahedra(deposit)) tetrahedra += tetrahedron.volume;
   for (double low = 0; low < 20; ++low) {
     const Region slice{low, std::nextafter(low + 1, 0)};
     slices += hole_table(holes, deposit.container, slice).volume();
@@ -200,11 +200,11 @@ TEST_CASE("Holes of a deposit share out its space") {
   // More of the volume finds a hole as bonds may be longer.
   double unclassified = 1;
   for (const double last : {1.2, 1.4, 1.6}) {
-    const auto some =
+    const auto found_holes =
         hole_table(bernal_holes(deposit, {.last = last}), deposit.container, pore_region);
-    CHECK(some.volume() == Approx(table.volume()).epsilon(0.01));
-    CHECK(some.unclassified_fraction() < unclassified);
-    unclassified = some.unclassified_fraction();
+    CHECK(found_holes.volume() == Approx(table.volume()).epsilon(0.01));
+    CHECK(found_holes.unclassified_fraction() < unclassified);
+    unclassified = found_holes.unclassified_fraction();
   }
   CHECK(unclassified < 0.05);
   // The region reaches over the whole width: holes across its ends nearly balance.

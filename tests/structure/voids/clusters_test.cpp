@@ -101,13 +101,14 @@ TEST_CASE("The variance of clusters of independent cells grows as their number")
 TEST_CASE("Cells dealt out anew have the variance that is given for independent ones", "[slow]") {
   // The whole of a closed box, and an open region of some 190 cells.
   const Packing closed = poisson_points(), bed = reference_deposit();
-  const auto everywhere = [](std::uint32_t) { return true; };
+  const auto is_counted = [](std::uint32_t) { return true; };
   const auto inside = [&](std::uint32_t i) {
     const Vec3 r = bed.centres[i];
     return r.z > 3 && r.z < 8.6 && r.x < 5.6 && r.y < 5.6;
   };
   RandomStream random(stream_key(20261125, 4, 0, Purpose::resampling));
-  const auto check = [&](const Packing& packing, const std::function<bool(std::uint32_t)>& around) {
+  const auto check = [&](const Packing& packing,
+                         const std::function<bool(std::uint32_t)>& centre_counts) {
     VoronoiCells cells = voronoi_cells(packing);
     std::vector<std::uint32_t> whole;
     for (std::uint32_t i = 0; i < cells.size(); ++i)
@@ -123,8 +124,8 @@ TEST_CASE("Cells dealt out anew have the variance that is given for independent 
     std::vector<double> expected;
     for (int deal = 0; deal < deals; ++deal) {
       for (std::size_t k = whole.size(); k > 1; --k)
-        std::swap(cells.volumes[whole[k - 1]], cells.volumes[whole[random.below(k)]]);
-      const ClusterVolumes found = cluster_volumes(packing, cells, 48, around);
+        std::swap(cells.volumes[whole[k - 1]], cells.volumes[whole[random.integer_below(k)]]);
+      const ClusterVolumes found = cluster_volumes(packing, cells, 48, centre_counts);
       expected = found.independent;
       sums.resize(expected.size());
       sums_of_squares.resize(expected.size());
@@ -143,7 +144,7 @@ TEST_CASE("Cells dealt out anew have the variance that is given for independent 
     }
     return expected;
   };
-  const std::vector<double> box = check(closed, everywhere);
+  const std::vector<double> box = check(closed, is_counted);
   // n = 32: some n/N less than 1, or more where clusters crowd.
   CHECK(box[9] == Approx(1 - 32.0 / static_cast<double>(closed.centres.size())).margin(0.03));
   const std::vector<double> open = check(bed, inside);

@@ -136,7 +136,7 @@ TEST_CASE("Pores of close-packed crystals are their sites") {
       // Two tetrahedral sites and an octahedral one a sphere.
       CHECK(sites.at(Site::tetrahedral) == 1000);
       CHECK(sites.at(Site::octahedral) == 500);
-      CHECK(sites.count(Site::other) == 0);
+      CHECK(sites.count(Site::irregular) == 0);
       for (const Pore& pore : all) {
         CHECK(pore.owners.size() == (site_of(pore, 0.05) == Site::octahedral ? 6 : 4));
       }
@@ -311,12 +311,12 @@ TEST_CASE("A lattice between walls and in a tube has the void probability of the
     return packing;
   };
   const std::vector<double> sigma = {1.1, 1.3, 1.6};
-  const auto of = [&](const Packing& packing) {
+  const auto pores_of = [&](const Packing& packing) {
     return void_probability(packing, {1, 7.8, 1}, sigma, 60'000, StreamKey{3});
   };
-  const VoidProbability periodic = of(lattice(PeriodicBox{6, 6}, 0.6));
+  const VoidProbability periodic = pores_of(lattice(PeriodicBox{6, 6}, 0.6));
   for (const Packing& packing : {lattice(WalledBox{5.8, 5.8}, 0.5), lattice(Cylinder{7.8}, 1.5)}) {
-    const VoidProbability found = of(packing);
+    const VoidProbability found = pores_of(packing);
     for (std::size_t s = 0; s < sigma.size(); ++s) {
       CAPTURE(sigma[s]);
       CHECK(found.probability[s] == Approx(periodic.probability[s]).margin(0.03));

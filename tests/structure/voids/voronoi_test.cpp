@@ -40,11 +40,11 @@ struct Mean {
   double value, error;
 };
 template <class Of>
-Mean mean_over(const VoronoiCells& cells, Of of) {
+Mean mean_over(const VoronoiCells& cells, Of value_of) {
   double first = 0, second = 0;
   const auto n = static_cast<double>(cells.size());
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
-    const double x = of(i);
+    const double x = value_of(i);
     first += x / n;
     second += x * x / n;
   }

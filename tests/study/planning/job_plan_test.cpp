@@ -14,7 +14,7 @@ constexpr double hour = 3600;
 
 SceneCost cost(std::vector<double> hours, std::uint32_t realizations) {
   SceneCost cost{.realization = {}, .realizations = realizations};
-  for (const double one : hours) cost.realization.emplace_back(one * hour);
+  for (const double duration : hours) cost.realization.emplace_back(duration * hour);
   return cost;
 }
 
@@ -52,9 +52,9 @@ TEST_CASE(
   const auto better = better_layout(ten, request(12, 4, 2));
   REQUIRE(better);
   CHECK(better->cpus * better->shards <= 8);
-  const JobPlan other = plan_jobs(ten, *better);
-  CHECK(other.efficiency == Approx(1));
-  CHECK(hours(other.longest_task) == Approx(2));
+  const JobPlan better_plan = plan_jobs(ten, *better);
+  CHECK(better_plan.efficiency == Approx(1));
+  CHECK(hours(better_plan.longest_task) == Approx(2));
   // One that wastes nothing has no better one.
   CHECK(!better_layout(ten, request(12, 5, 2)));
   CHECK(!better_layout(ten, request(12, 1, 10)));

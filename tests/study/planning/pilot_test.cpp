@@ -97,22 +97,22 @@ TEST_CASE("A ramp costs the sum over its taps") {
   };
   const double weak = sweeps({{Dilate{0.01}, 10}}), strong = sweeps({{Dilate{0.3}, 10}});
   CHECK(strong > 1.5 * weak);  // a bed that is stretched more falls longer
-  const double both = sweeps({{Dilate{0.01}, 30}, {Dilate{0.3}, 10}});
-  CHECK(both > weak);
-  CHECK(both < strong);
+  const double sweeps_of_both = sweeps({{Dilate{0.01}, 30}, {Dilate{0.3}, 10}});
+  CHECK(sweeps_of_both > weak);
+  CHECK(sweeps_of_both < strong);
 }
 
 TEST_CASE("The memory includes the followed motion") {
   Plan plan = plan_of(PeriodicBox{8, 8}, 500);
-  const PilotEstimate without = pilot(plan, 1'000'000);
+  const PilotEstimate bare = pilot(plan, 1'000'000);
   plan.motion = MotionSettings{.origins = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9},
                                .lags = {1, 2, 3, 4, 5},
                                .overlap_lengths = {0.05, 0.1},
                                .layers = 20};
-  const PilotEstimate with = pilot(plan, 1'000'000);
+  const PilotEstimate measured = pilot(plan, 1'000'000);
   const std::uint64_t followed = motion_bytes(*plan.motion, 500);
   CHECK(followed > 11 * 500 * sizeof(Vec3));
-  CHECK(with.bytes == without.bytes + 4 * followed);
+  CHECK(measured.bytes == bare.bytes + 4 * followed);
   // For a bed that is cut for the pilot, the value is that of the whole bed.
   Plan large = plan_of(PeriodicBox{100, 100}, 40'000);
   monte_carlo(large).relax.stop.rule = SweepsStop{1};

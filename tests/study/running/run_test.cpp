@@ -16,14 +16,14 @@ using namespace jostle;
 namespace {
 
 /// Milliseconds: two sweep points of two realizations, with all that a scene can ask for.
-std::string scene_text(const std::string& more = "") {
+std::string scene_text(const std::string& settings = "") {
   return R"({"name": "small", "seed": 12, "realizations": 2,
     "container": {"sides": "periodic", "width": 4}, "spheres": 40,
     "protocol": [{"tap": {"dilate": 0.05}, "count": 12}],
     "relax": {"polar": {}, "stop": {"sweeps": 20}},
     "observe": ["mean_height", "bottom_fraction"],
     "sweep": {"/protocol/0/tap/dilate": [0.02, 0.1]})" +
-         more + "}";
+         settings + "}";
 }
 
 const std::string wishes = R"(, "snapshots": {"taps": [0, 12]},
@@ -109,8 +109,8 @@ TEST_CASE("A file that is there is kept, resumed or replaced") {
   CHECK(digest_of(output) == digest);
   {
     Heard heard;
-    SceneRun again(loaded, {.output = output, .existing = Existing::resume}, heard);
-    CHECK(again.compute());
+    SceneRun repeated(loaded, {.output = output, .existing = Existing::resume}, heard);
+    CHECK(repeated.compute());
     CHECK(heard.n_pending == 0);
   }
   CHECK(digest_of(output) == digest);
@@ -119,9 +119,9 @@ TEST_CASE("A file that is there is kept, resumed or replaced") {
   };
   CHECK_THROWS_AS(resume_shard(), OtherShard);
 
-  LoadedScene other = load(folder, scene_text(R"(, "streams": "matched")"));
+  LoadedScene changed = load(folder, scene_text(R"(, "streams": "matched")"));
   try {
-    SceneRun(other, {.output = output, .existing = Existing::resume}, nobody);
+    SceneRun(changed, {.output = output, .existing = Existing::resume}, nobody);
     FAIL("another scene was resumed");
   } catch (const OtherScene& error) {
     CHECK(error.path() == output);
@@ -129,7 +129,7 @@ TEST_CASE("A file that is there is kept, resumed or replaced") {
     CHECK(std::string(error.what()).find("--") == std::string::npos);
   }
   CHECK(digest_of(output) == digest);
-  CHECK(SceneRun(other, {.output = output, .existing = Existing::replace}, nobody).compute());
+  CHECK(SceneRun(changed, {.output = output, .existing = Existing::replace}, nobody).compute());
   CHECK(digest_of(output) != digest);
 }
 
@@ -163,8 +163,8 @@ TEST_CASE("A stop leaves a file that continues to the same digest") {
   CHECK(SceneRun(loaded, {.output = folder / "whole.h5"}, nobody).compute());
   const std::atomic<bool> stop = true;
   CHECK_FALSE(SceneRun(loaded, {.output = folder / "out.h5", .stop = &stop}, nobody).compute());
-  SceneRun again(loaded, {.output = folder / "out.h5", .existing = Existing::resume}, nobody);
-  CHECK(again.compute());
+  SceneRun repeated(loaded, {.output = folder / "out.h5", .existing = Existing::resume}, nobody);
+  CHECK(repeated.compute());
   CHECK(digest_of(folder / "out.h5") == digest_of(folder / "whole.h5"));
 }
 
@@ -216,9 +216,9 @@ TEST_CASE("A stop that would fold much leaves it in the parts, and continues to 
   REQUIRE(overview.studies.size() == 1);
   CHECK(overview.studies[0].shards[0].state == ShardState::stopped);
 
-  SceneRun again(loaded, {.output = output, .existing = Existing::resume}, nobody);
-  CHECK(again.compute());
-  CHECK_FALSE(again.left_in_parts());
+  SceneRun repeated(loaded, {.output = output, .existing = Existing::resume}, nobody);
+  CHECK(repeated.compute());
+  CHECK_FALSE(repeated.left_in_parts());
   CHECK(digest_of(output) == digest_of(folder / "whole.h5"));
   CHECK(run_status(output).parts_bytes == 0);
 }
@@ -231,8 +231,9 @@ TEST_CASE("The scenes of sweep points are those of their plans") {
   const PointScenes scenes(run.results());
   CHECK(scenes.scene() == loaded.scene);
   for (std::uint32_t point = 0; point < loaded.plans.size(); ++point) {
-    CHECK(scenes.at(point).seed == loaded.plans[point].seed);
-    CHECK(scenes.at(point).protocol.front().tap == loaded.plans[point].protocol.front().tap);
+    CHECK(scenes.point_scene(point).seed == loaded.plans[point].seed);
+    CHECK(scenes.point_scene(point).protocol.front().tap ==
+          loaded.plans[point].protocol.front().tap);
     CHECK(*scenes.value_at(point, "/protocol/0/tap/dilate") == (point == 0 ? 0.02 : 0.1));
     CHECK(*scenes.value_at(point, "/container/width") == 4);
     CHECK_FALSE(scenes.value_at(point, "/container/depth"));

@@ -25,8 +25,8 @@ TEST_CASE("All laws compete, and no two of them draw the same curves") {
   for (std::size_t i = 0; i < all.size(); ++i) {
     REQUIRE(all[i] != nullptr);
     CHECK(all[i]->name() == names[i]);
-    const auto same = all[i]->equivalent();
-    if (same) CHECK(std::ranges::find(names, same->law->name()) == names.end());
+    const auto equivalent = all[i]->equivalent();
+    if (equivalent) CHECK(std::ranges::find(names, equivalent->law->name()) == names.end());
   }
 }
 

@@ -55,10 +55,11 @@ Json ageing_table(const TableView& table) {
 std::string with_capitals(std::string text) {
   for (const auto& [name, symbol] :
        {std::pair{'a', 'A'}, std::pair{'b', 'B'}, std::pair{'v', 'V'}}) {
-    for (const std::string before : {"of ", "equal "}) {
-      const std::string written = before + name + ' ';
-      for (std::size_t at = 0; (at = text.find(written, at)) != std::string::npos; ++at) {
-        text[at + before.size()] = symbol;
+    for (const std::string prefix : {"of ", "equal "}) {
+      const std::string written = prefix + name + ' ';
+      for (std::size_t index = 0; (index = text.find(written, index)) != std::string::npos;
+           ++index) {
+        text[index + prefix.size()] = symbol;
       }
     }
     if (text.starts_with(std::string(1, name) + ' ')) text.front() = symbol;

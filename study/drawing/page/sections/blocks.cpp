@@ -28,11 +28,11 @@ Json shown(const PageRow& row) {
 Json figures_block(const PageContent& content, const WantedFigures& wanted) {
   Json places = Json::array();
   for (std::size_t i = 0; i < content.figures.size(); ++i) {
-    const Figure& one = content.figures[i];
-    if (one.section != wanted.section) continue;
-    if (wanted.point && one.point && *wanted.point != *one.point) continue;
-    if (wanted.point && one.subject == comparison_subject) continue;
-    if (!wanted.subject.empty() && wanted.subject != one.subject) continue;
+    const Figure& figure = content.figures[i];
+    if (figure.section != wanted.section) continue;
+    if (wanted.point && figure.point && *wanted.point != *figure.point) continue;
+    if (wanted.point && figure.subject == comparison_subject) continue;
+    if (!wanted.subject.empty() && wanted.subject != figure.subject) continue;
     places.push_back(i);
   }
   if (places.empty()) return nullptr;

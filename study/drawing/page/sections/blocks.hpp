@@ -29,8 +29,8 @@ class Blocks {
   void add(const Json& block) {
     if (!block.is_null()) list_.push_back(block);
   }
-  void add(const Blocks& others) {
-    for (const Json& block : others.list_) list_.push_back(block);
+  void add(const Blocks& remaining) {
+    for (const Json& block : remaining.list_) list_.push_back(block);
   }
   bool empty() const { return list_.empty(); }
   Json json() const { return list_; }

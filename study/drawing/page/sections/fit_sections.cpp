@@ -22,10 +22,10 @@ struct Parameters {
   double value(std::size_t j) const { return table.value(prefix + "value", j); }
   /// level: 0 for 68 %, 1 for 95 %.
   double low(std::size_t j, std::size_t level) const {
-    return at(table.row(prefix + "interval_lower", j), level);
+    return value_at(table.row(prefix + "interval_lower", j), level);
   }
   double high(std::size_t j, std::size_t level) const {
-    return at(table.row(prefix + "interval_upper", j), level);
+    return value_at(table.row(prefix + "interval_upper", j), level);
   }
   bool is_limited(std::size_t j) const {
     return std::isfinite(value(j)) && std::isfinite(low(j, 1)) && std::isfinite(high(j, 1));
@@ -76,18 +76,18 @@ std::string joined(const std::vector<std::string>& names) {
 
 /// How many of the parameters the data determine.
 std::string identified(const Parameters& parameters) {
-  std::vector<std::string> known, others;
+  std::vector<std::string> known, unknown;
   const std::vector<std::string> names = parameters.names();
   for (std::size_t j = 0; j < names.size(); ++j) {
-    (parameters.is_limited(j) ? known : others).push_back(names[j]);
+    (parameters.is_limited(j) ? known : unknown).push_back(names[j]);
   }
-  if (others.empty()) return "All parameters are limited on both sides.";
+  if (unknown.empty()) return "All parameters are limited on both sides.";
   if (known.empty()) {
     return "No parameter is limited on both sides: the curve does not identify this law.";
   }
   return fmt::format("{} {} limited on both sides; {} {} not.", joined(known),
-                     known.size() == 1 ? "is" : "are", joined(others),
-                     others.size() == 1 ? "is" : "are");
+                     known.size() == 1 ? "is" : "are", joined(unknown),
+                     unknown.size() == 1 ? "is" : "are");
 }
 
 /// Statement on the parameters of the law, or of its limit if that was fitted.
@@ -124,9 +124,9 @@ Blocks law_blocks(const TableView& law) {
     blocks.add(parameter_table({law, "limit_"}, "limit X = " + law.note("limit_law")));
   }
   blocks.add(parameter_table({law}, law_name(law)));
-  if (const std::string other = law.note("restated_model"); !other.empty()) {
+  if (const std::string candidate = law.note("restated_model"); !candidate.empty()) {
     blocks.add(statement_block("Another form of this curve", law.note("restated_law")));
-    blocks.add(parameter_table({law, "restated_"}, law_name(other)));
+    blocks.add(parameter_table({law, "restated_"}, law_name(candidate)));
   }
   blocks.add(statement_block("Combinations", law.note("combinations")));
   blocks.add(statement_block("Remarks", law.note("remarks")));

@@ -12,14 +12,14 @@ namespace jostle::inline study {
 namespace {
 
 Json curves_section(const PageContent& content, const std::string& id, const std::string& title,
-                    const std::string& intro, const std::string& of) {
-  return page_section(id, title, intro, {figures_block(content, {.section = of})});
+                    const std::string& intro, const std::string& subject) {
+  return page_section(id, title, intro, {figures_block(content, {.section = subject})});
 }
 
 /// The figures of a section that only some readers look for, folded until one asks for them.
 Json folded_section(const PageContent& content, const std::string& id, const std::string& title,
-                    const std::string& intro, const std::string& of) {
-  const Json figures = figures_block(content, {.section = of});
+                    const std::string& intro, const std::string& subject) {
+  const Json figures = figures_block(content, {.section = subject});
   if (figures.is_null()) return nullptr;
   const std::size_t n = figures.at("figures").size();
   return page_section(id, title, intro,
@@ -39,7 +39,9 @@ Json engine_section(const PageContent& content, bool has_grains) {
 std::string listed(const TableView& table, const std::string& quantity) {
   constexpr std::size_t most = 50;
   std::string text;
-  const auto add = [&](const std::string& one) { text += (text.empty() ? "" : ", ") + one; };
+  const auto add = [&](const std::string& sentence) {
+    text += (text.empty() ? "" : ", ") + sentence;
+  };
   const std::vector<std::string> texts = table.texts(quantity);
   for (std::size_t i = 0; i < std::min(most, texts.size()); ++i) add(texts[i]);
   const std::vector<double> values = table.values(quantity);

@@ -66,9 +66,9 @@ Json histories_table(const TableView& table) {
     PageRow row{number_cell(table, "second_" + control, i) + " minus " +
                 number_cell(table, "first_" + control, i)};
     for (std::size_t j = 0; j < lags.size(); ++j) {
-      const std::size_t at = i * lags.size() + j;
-      row.emplace_back(value_cell(table, "difference", at) +
-                       ", p = " + number_cell(table, "difference_p_corrected", at, 2));
+      const std::size_t index = i * lags.size() + j;
+      row.emplace_back(value_cell(table, "difference", index) +
+                       ", p = " + number_cell(table, "difference_p_corrected", index, 2));
     }
     rows.push_back(row);
   }
@@ -79,10 +79,11 @@ Json histories_table(const TableView& table) {
 
 Json ordering_section(const PageContent& content) {
   const std::vector<TableView> all = tables_of(content.file, "analysis", "ordering");
-  std::vector<TableView> points, over;
-  for (const TableView& table : not_refused(all)) (table.point() ? points : over).push_back(table);
+  std::vector<TableView> points, comparisons;
+  for (const TableView& table : not_refused(all))
+    (table.point() ? points : comparisons).push_back(table);
   Blocks blocks{figures_block(content, {.section = "ordering"})};
-  for (const TableView& table : over) {
+  for (const TableView& table : comparisons) {
     blocks.add(statement_block("Orders first, by " + words(table.path().back()),
                                table.note("orders_first")));
     blocks.add(statement_block("Ends highest", table.note("largest_value")));

@@ -67,8 +67,8 @@ Json numbers_table(const TableView& table, const Part& part) {
 /// Differences between sweep points, one line per quantity and pair.
 Json differences_table(const DrawnFile& file, const TableView& table, const Part& part) {
   const std::vector<std::string> quantities = table.texts("quantity"), units = table.texts("units");
-  const auto label = [&](const char* which, std::size_t i) {
-    return file.label(static_cast<std::uint32_t>(table.value(which, i)));
+  const auto label = [&](const char* bound, std::size_t i) {
+    return file.label(static_cast<std::uint32_t>(table.value(bound, i)));
   };
   std::vector<PageRow> rows;
   for (std::size_t i = 0; i < quantities.size(); ++i) {

@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t most_named = 8;  // sweep points in a line
 
-std::string linked(const std::vector<std::string>& parts, const std::string& between = ", ") {
+std::string linked(const std::vector<std::string>& parts, const std::string& separator = ", ") {
   std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
+  for (const std::string& part : parts) text += (text.empty() ? "" : separator) + part;
   return text;
 }
 
@@ -96,8 +96,8 @@ std::string at_the_end(const DrawnFile& file) {
   std::vector<std::size_t> taps;
   for (const std::size_t i : evenly_spread(file.curves().size(), most_named)) {
     const DrawnCurve& curve = file.curves()[i];
-    const auto column = std::ranges::find_if(curve.columns, [&](const DrawnColumn& one) {
-      return one.label.name == wanted->label.name;
+    const auto column = std::ranges::find_if(curve.columns, [&](const DrawnColumn& drawn_column) {
+      return drawn_column.label.name == wanted->label.name;
     });
     if (column == curve.columns.end()) continue;
     for (std::size_t t = curve.taps.size(); t-- > 0;) {
@@ -145,8 +145,8 @@ std::string law_line(const DrawnFile& file) {
   for (const std::uint32_t point : numbers_of(made)) {
     const std::vector<FittedLaws> fitted = fitted_laws(made, point);
     if (observable.empty()) observable = fitted.front().observable;
-    for (const FittedLaws& one : fitted) {
-      if (one.observable == observable) answers.add(point, law_answer(one));
+    for (const FittedLaws& laws : fitted) {
+      if (laws.observable == observable) answers.add(point, law_answer(laws));
     }
   }
   return words(observable) + ": " + answers.text();

@@ -41,8 +41,8 @@ Counts check_pairs(double smallest, double ratio, double longest, int trials) {
   for (int trial = 0; trial < trials; ++trial) {
     const auto radius = [&] { return 0.5 * smallest * std::pow(ratio, random.uniform()); };
     const Vec3 r{60 * random.uniform(), 70 * random.uniform(), 80 * random.uniform()};
-    const PackedCentre from = packed_sphere(r, radius());
-    const double other_radius = radius(), touching = from.radius + other_radius;
+    const PackedCentre start = packed_sphere(r, radius());
+    const double other_radius = radius(), touching = start.radius + other_radius;
     const Vec3 step = random_step(longest, random);
     const Vec3 target = wrapped(container, r + step);
     const Vec3 direction = random_direction(random);
@@ -55,9 +55,9 @@ Counts check_pairs(double smallest, double ratio, double longest, int trials) {
     const Vec3 origin = near_contact ? target : r;
     const Vec3 b = wrapped(container, origin + (touching + gap) * direction);
     if (overlaps(container, r, b, touching)) continue;
-    const PackedCentre to = packed_sphere(b, other_radius);
+    const PackedCentre end = packed_sphere(b, other_radius);
     SizedBlockerCache cache;
-    cache.see(box, from, to, trial % 4, longest);
+    cache.see(box, start, end, trial % 4, longest);
     const bool is_rejected = rejects(cache, step);
     const double squared = norm_squared(separation(container, target, b));
     const bool overlapping = squared < touching * touching;

@@ -57,9 +57,9 @@ void check_lists(const Packing& packing, double skin) {
         for (std::uint32_t i = 0; i < packing.centres.size(); ++i) {
           std::vector<std::uint32_t> found = list_of(lists, i), expected;
           for (std::uint32_t j = 0; j < packing.centres.size(); ++j) {
-            const Vec3 away = separation(box, packing.centres[i], packing.centres[j]);
+            const Vec3 displacement = separation(box, packing.centres[i], packing.centres[j]);
             const double reach = packing.radius(i) + packing.radius(j) + skin;
-            if (j != i && norm_squared(away) < reach * reach) expected.push_back(j);
+            if (j != i && norm_squared(displacement) < reach * reach) expected.push_back(j);
           }
           std::ranges::sort(found);
           REQUIRE(found == expected);
@@ -121,7 +121,7 @@ void check_renewals(double smallest, double ratio) {
           lists.build(box, centres, skin, {0, 0, -0.04});
           int renewals = 0, builds = 0;
           for (int step = 0; step < 30'000; ++step) {
-            const auto i = static_cast<std::uint32_t>(random.below(n));
+            const auto i = static_cast<std::uint32_t>(random.integer_below(n));
             const auto shift = [&] { return longest * (random.uniform() - 0.5); };
             Vec3 r = wrapped(box, unpacked(centres[i]) + Vec3{shift(), shift(), shift()});
             if (!clear_of_boundaries(box, r)) continue;
@@ -141,13 +141,13 @@ void check_renewals(double smallest, double ratio) {
               REQUIRE(std::ranges::find(list, a) == list.end());
               // A trial may carry sphere a to the rim of its half skin.
               for (std::uint32_t b = 0; b < n; ++b) {
-                const Vec3 away =
+                const Vec3 displacement =
                     separation(box, unpacked(lists.origins()[a]), unpacked(centres[b]));
                 const double reach = packing.radius(a) + packing.radius(b) + 0.5 * skin;
                 const bool listed = std::ranges::find(list, b) != list.end();
-                if (b != a && norm_squared(away) < reach * reach) REQUIRE(listed);
-                const auto other = list_of(lists, b);
-                REQUIRE(listed == (std::ranges::find(other, a) != other.end()));
+                if (b != a && norm_squared(displacement) < reach * reach) REQUIRE(listed);
+                const auto second = list_of(lists, b);
+                REQUIRE(listed == (std::ranges::find(second, a) != second.end()));
               }
             }
           }

@@ -48,11 +48,11 @@ void check_caches(const PackedBox<Box>& box, const Neighbourhood<Box>& neighbour
         REQUIRE(cache.x[lane] == BlockerCache::far);
         continue;
       }
-      const PackedCentre& other = centres[row[1 + lane]];
-      const Pair away = box.lateral(other.xy - centres[i].xy);
-      REQUIRE(cache.x[lane] == static_cast<float>(away[0]));
-      REQUIRE(cache.y[lane] == static_cast<float>(away[1]));
-      REQUIRE(cache.z[lane] == static_cast<float>(box.vertical(other.z - centres[i].z)));
+      const PackedCentre& neighbour = centres[row[1 + lane]];
+      const Pair displacement = box.lateral(neighbour.xy - centres[i].xy);
+      REQUIRE(cache.x[lane] == static_cast<float>(displacement[0]));
+      REQUIRE(cache.y[lane] == static_cast<float>(displacement[1]));
+      REQUIRE(cache.z[lane] == static_cast<float>(box.vertical(neighbour.z - centres[i].z)));
     }
   }
 }
@@ -84,29 +84,29 @@ struct Walk {
 
   template <BlockerCaching caching>
   void make_trials(const Reach& reach, int n) {
-    auto here = neighbourhood.template view<caching>(reach);
-    for (int trial = 0; trial < n; ++trial) make_trial<caching>(here);
+    auto neighbourhood_view = neighbourhood.template view<caching>(reach);
+    for (int trial = 0; trial < n; ++trial) make_trial<caching>(neighbourhood_view);
   }
 
   template <BlockerCaching caching>
-  void make_trial(NeighbourhoodView<Box, caching, Spheres>& here) {
+  void make_trial(NeighbourhoodView<Box, caching, Spheres>& neighbourhood_view) {
     const PackedCentres& centres = neighbourhood.centres();
-    const auto i = static_cast<std::uint32_t>(random.below(centres.size()));
+    const auto i = static_cast<std::uint32_t>(random.integer_below(centres.size()));
     const auto part = [&] { return longest * (2 * random.uniform() - 1); };
     const Vec3 step{part(), part(), part()};
     const bool is_rejected = rejected<Spheres>(box, centres, i, step);
-    const PackedCentre target = here.target(i, Pair{step.x, step.y}, step.z);
+    const PackedCentre target = neighbourhood_view.target(i, Pair{step.x, step.y}, step.z);
     REQUIRE(unpacked(target) == wrapped(box, unpacked(centres[i]) + step));
-    if constexpr (caching == BlockerCaching::on) {
-      if (here.certainly_rejects(i, step.x, step.y, step.z)) {
+    if constexpr (caching == BlockerCaching::enabled) {
+      if (neighbourhood_view.certainly_rejects(i, step.x, step.y, step.z)) {
         REQUIRE(is_rejected);
         ++certainly_rejected;
       }
     }
-    const std::vector<std::uint32_t> before = row_of(i);
-    const bool free = !here.rejects(i, target);
-    promoted += row_of(i) != before;
-    const bool moves = free && here.move(i, target);
+    const std::vector<std::uint32_t> row_before = row_of(i);
+    const bool free = !neighbourhood_view.rejects(i, target);
+    promoted += row_of(i) != row_before;
+    const bool moves = free && neighbourhood_view.move(i, target);
     REQUIRE(moves == !is_rejected);
     moved += moves;
   }
@@ -135,10 +135,10 @@ void check_walk(const Packing& packing) {
           const bool caching = stretch % 5 != 4;
           if (stretch % 40 == 39) walk.neighbourhood.load(walk.stored(packing));
           if (caching) {
-            walk.template make_trials<BlockerCaching::on>({reach, -0.1}, 200);
+            walk.template make_trials<BlockerCaching::enabled>({reach, -0.1}, 200);
             check_caches(walk.packed_box, walk.neighbourhood, reach);
           } else {
-            walk.template make_trials<BlockerCaching::off>({reach, -0.1}, 200);
+            walk.template make_trials<BlockerCaching::disabled>({reach, -0.1}, 200);
           }
         }
         CHECK(walk.moved > 1000);
@@ -170,13 +170,13 @@ TEST_CASE("a neighbourhood is built anew for longer steps, not for shorter ones"
   neighbourhood.load(random_packing(box, 24, 5, 31));
   CHECK(neighbourhood.builds() == 0);
   for (const double longest : {0.2, 0.1, 0.2}) {
-    neighbourhood.view<BlockerCaching::off>({longest, 0});
+    neighbourhood.view<BlockerCaching::disabled>({longest, 0});
     CHECK(neighbourhood.builds() == 1);
   }
-  neighbourhood.view<BlockerCaching::on>({0.3, 0});
+  neighbourhood.view<BlockerCaching::enabled>({0.3, 0});
   CHECK(neighbourhood.builds() == 2);
   neighbourhood.load(random_packing(box, 20, 5, 32));
-  neighbourhood.view<BlockerCaching::on>({0.1, 0});
+  neighbourhood.view<BlockerCaching::enabled>({0.1, 0});
   CHECK(neighbourhood.builds() == 3);
   CHECK(neighbourhood.centres().size() == 20);
 }

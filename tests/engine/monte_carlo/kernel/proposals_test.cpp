@@ -105,14 +105,14 @@ TEST_CASE("a batch is made of the blocks of its stream") {
 TEST_CASE("every instruction set proposes the same bits") {
   const auto table = make_theta_table({});
   const auto compare = [&](const ProposalKernels& kernels) {
-    auto own = std::make_unique<ProposalBatch>(), other = std::make_unique<ProposalBatch>();
+    auto own = std::make_unique<ProposalBatch>(), second = std::make_unique<ProposalBatch>();
     for (std::uint64_t first = 0; first < 200'000; first += ProposalBatch::size) {
       baseline::proposal_kernels().polar({key, first, 1000}, table.data(), 0.1, *own);
-      kernels.polar({key, first, 1000}, table.data(), 0.1, *other);
-      REQUIRE(std::memcmp(own.get(), other.get(), sizeof(ProposalBatch)) == 0);
+      kernels.polar({key, first, 1000}, table.data(), 0.1, *second);
+      REQUIRE(std::memcmp(own.get(), second.get(), sizeof(ProposalBatch)) == 0);
       baseline::proposal_kernels().metropolis({key, first, 1000}, *own);
-      kernels.metropolis({key, first, 1000}, *other);
-      REQUIRE(std::memcmp(own.get(), other.get(), sizeof(ProposalBatch)) == 0);
+      kernels.metropolis({key, first, 1000}, *second);
+      REQUIRE(std::memcmp(own.get(), second.get(), sizeof(ProposalBatch)) == 0);
     }
   };
   for (const InstructionSet set : instruction_sets()) compare(kernels_for(set).proposals);

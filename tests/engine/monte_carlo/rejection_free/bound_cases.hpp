@@ -75,11 +75,11 @@ bool possible(const Box& box, const std::vector<PackedCentre>& centres, std::uin
 }
 
 struct Tried {
-  int beyond = 0, wrong = 0, possible_within = 0, within = 0;
+  int beyond = 0, wrong = 0, possible_within = 0, n_within = 0;
 
-  void operator+=(const Tried& other) {
-    beyond += other.beyond, wrong += other.wrong;
-    possible_within += other.possible_within, within += other.within;
+  void operator+=(const Tried& rhs) {
+    beyond += rhs.beyond, wrong += rhs.wrong;
+    possible_within += rhs.possible_within, n_within += rhs.n_within;
   }
 };
 
@@ -114,7 +114,7 @@ Tried try_steps(const Box& box, const Kind<Directions>& kind,
       const double side = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)});
       if (side > kind.move.max_step) continue;
       const bool free = possible<Spheres>(box, tables.centres(), i, step);
-      (beyond ? tried.beyond : tried.within) += 1;
+      (beyond ? tried.beyond : tried.n_within) += 1;
       (beyond ? tried.wrong : tried.possible_within) += free;
     }
   }

@@ -54,7 +54,7 @@ void check_function_of_centres(const Kind<Directions>& kind) {
   RandomStream random(stream_key(49, 0, 0, Purpose::start));
   int moves = 0;
   for (int trial = 0; trial < 200'000; ++trial) {
-    const auto i = static_cast<std::uint32_t>(random.below(100));
+    const auto i = static_cast<std::uint32_t>(random.integer_below(100));
     const Vec3 step{0.2 * random.uniform() - 0.1, 0.2 * random.uniform() - 0.1,
                     0.2 * random.uniform() - 0.1};
     const Vec3 target = wrapped(box, unpacked(moved.centres()[i]) + step);
@@ -83,7 +83,7 @@ void check_weights_of(const Box& box, const std::vector<PackedCentre>& centres,
   tables.build(kind.bins(), centres);
   double excess = 0, all = 0;
   for (std::uint32_t i = 0; i < centres.size(); ++i) {
-    std::int32_t before = 0;
+    std::int32_t state_before = 0;
     for (int sector = 0; sector < Directions::n_sectors; ++sector) {
       double sum = 0;
       for (int ring = 0; ring < n_rings; ++ring) {
@@ -93,12 +93,12 @@ void check_weights_of(const Box& box, const std::vector<PackedCentre>& centres,
         sum += size * tables.bins().parts[ring] * whole_weight;
       }
       const std::int32_t weight =
-          tables.row(i).up_to[sector] - std::exchange(before, tables.row(i).up_to[sector]);
+          tables.row(i).up_to[sector] - std::exchange(state_before, tables.row(i).up_to[sector]);
       REQUIRE(weight >= sum * (1 - 1e-12));
       excess += weight - sum;
       all += sum;
     }
-    REQUIRE(before == static_cast<std::int32_t>(tables.weights().weight(i)));
+    REQUIRE(state_before == static_cast<std::int32_t>(tables.weights().weight(i)));
   }
   CHECK(excess < 1e-3 * all);
 }
@@ -117,13 +117,13 @@ void check_blocked(const Box& box, std::uint32_t n) {
   for (std::uint32_t i = 0; i < n; ++i) {
     const Vec3 own = unpacked(centres[i]);
     for (std::uint32_t j = 0; j < n; ++j) {
-      const Vec3 away = separation(box, unpacked(centres[j]), own);
-      const double distance = std::sqrt(norm_squared(away));
+      const Vec3 displacement = separation(box, unpacked(centres[j]), own);
+      const double distance = std::sqrt(norm_squared(displacement));
       if (i == j || distance > 1.09) continue;
       for (const double beyond : {1e-3, 1e-5, 3e-6, 1e-6, 1e-7, 1e-9, 1e-12, 0.0, -1e-12, -1e-9,
                                   -1e-7, -1e-6, -3e-6, -1e-5, -1e-3}) {
         const double length = distance - 1 + beyond;
-        const Vec3 step = (length / distance) * away;
+        const Vec3 step = (length / distance) * displacement;
         const PackedCentre target =
             packed_box.wrapped({centres[i].xy + Pair{step.x, step.y}, centres[i].z + step.z, 0});
         bool expected = false;
@@ -183,13 +183,16 @@ TEST_CASE("a weight tree finds what adding up the weights finds") {
     tree.assign(weights);
     CHECK(tree.total() == 0);
     for (std::uint32_t i = 0; i < n; ++i) {
-      weights[i] = static_cast<std::uint32_t>(random.below(4) == 0 ? 0 : random.below(1u << 25));
+      weights[i] = static_cast<std::uint32_t>(
+          random.integer_below(4) == 0 ? 0 : random.integer_below(1u << 25));
       tree.set(i, weights[i]);
     }
     const std::uint64_t total = std::accumulate(weights.begin(), weights.end(), std::uint64_t{0});
     REQUIRE(tree.total() == total);
     for (int draw = 0; draw < 1000 && total > 0; ++draw) {
-      const std::uint64_t target = draw == 0 ? 0 : draw == 1 ? total - 1 : random.below(total);
+      const std::uint64_t target = draw == 0   ? 0
+                                   : draw == 1 ? total - 1
+                                               : random.integer_below(total);
       std::uint32_t i = 0;
       std::uint64_t rest = target;
       while (rest >= weights[i]) rest -= weights[i++];

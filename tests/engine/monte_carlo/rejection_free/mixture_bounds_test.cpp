@@ -17,20 +17,20 @@ constexpr std::array ratios = {1.4, 3.0, 10.0};
 
 // Two spheres that do not overlap, above the floor, the second within reach of a step of the first:
 // now in contact to rounding, now at the end of the longest step.
-std::vector<PackedCentre> random_pair(const PeriodicBox& box, double radius, double other,
+std::vector<PackedCentre> random_pair(const PeriodicBox& box, double radius, double second,
                                       double longest, RandomStream& random) {
-  const double touching = radius + other, u = random.uniform();
+  const double touching = radius + second, u = random.uniform();
   const double gap = u < 0.5   ? std::pow(10.0, -12 * random.uniform()) * longest
                      : u < 0.6 ? longest * (1 + 1e-4 * (random.uniform() - 0.5))
                                : longest * random.uniform();
-  const double down = 1.2 * random.uniform() - 0.2, across = std::sqrt(1 - down * down);
+  const double downward = 1.2 * random.uniform() - 0.2, across = std::sqrt(1 - downward * downward);
   const double azimuth = 2 * std::numbers::pi * random.uniform();
   const double distance = touching * (1 + 1e-15) + gap;
-  const Vec3 from{box.width_x * random.uniform(), box.width_y * random.uniform(),
-                  2.2 * touching + 2 * longest};
-  const Vec3 to =
-      from + distance * Vec3{across * std::cos(azimuth), across * std::sin(azimuth), -down};
-  return {packed_sphere(from, radius), packed_sphere(wrapped(box, to), other)};
+  const Vec3 start{box.width_x * random.uniform(), box.width_y * random.uniform(),
+                   2.2 * touching + 2 * longest};
+  const Vec3 end =
+      start + distance * Vec3{across * std::cos(azimuth), across * std::sin(azimuth), -downward};
+  return {packed_sphere(start, radius), packed_sphere(wrapped(box, end), second)};
 }
 
 // Steps past random pairs of spheres, of the smallest possible diameters, the largest, and between.
@@ -141,8 +141,8 @@ TEST_CASE("a sphere of ten diameters has bounds from hundreds of small ones") {
   const auto centres =
       let_down<SeveralSizes>({box, places, std::make_shared<const Sizes>(diameters)}, 1500);
   const Vec3 large = unpacked(centres[0]);
-  const auto near = std::ranges::count_if(centres, [&](const PackedCentre& other) {
-    return norm_squared(separation(box, unpacked(other), large)) < 5.8 * 5.8;
+  const auto near = std::ranges::count_if(centres, [&](const PackedCentre& second) {
+    return norm_squared(separation(box, unpacked(second), large)) < 5.8 * 5.8;
   });
   REQUIRE(near > 2 * std::ptrdiff_t{most_in_the_way});
   RandomStream random(stream_key(83, 0, 0, Purpose::start));
@@ -156,11 +156,11 @@ TEST_CASE("a sphere of ten diameters has bounds from hundreds of small ones") {
     const double weight = tables.weights().weight(0);
     CHECK(weight < 0.2 * n_ring_parts * Directions::n_sectors * whole_weight);
     for (const InstructionSet set : instruction_sets()) {
-      BoundTables<PeriodicBox, Directions, SeveralSizes> others(box,
-                                                                kernels_for(set).rejection_free);
-      others.build(kind.bins(), centres);
-      CHECK(others.weights().total() == tables.weights().total());
-      CHECK(others.weights().weight(0) == weight);
+      BoundTables<PeriodicBox, Directions, SeveralSizes> remaining(box,
+                                                                   kernels_for(set).rejection_free);
+      remaining.build(kind.bins(), centres);
+      CHECK(remaining.weights().total() == tables.weights().total());
+      CHECK(remaining.weights().weight(0) == weight);
     }
   };
   check(Kind<PolarDirections>{PolarMove{0.3}});
@@ -204,13 +204,13 @@ TEST_CASE("single precision decides for mixtures only what double precision woul
     int blocked = 0;
     for (std::uint32_t i = 0; i < 60; ++i) {
       for (std::uint32_t j = 0; j < 60; ++j) {
-        const Vec3 away = separation(box, unpacked(centres[j]), unpacked(centres[i]));
-        const double distance = std::sqrt(norm_squared(away));
+        const Vec3 displacement = separation(box, unpacked(centres[j]), unpacked(centres[i]));
+        const double distance = std::sqrt(norm_squared(displacement));
         const double touching = centres[i].radius + centres[j].radius;
         if (i == j || distance > touching + 0.9 * kind.move.max_step) continue;
         for (const double beyond : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9, 1e-12, 0.0, -1e-12, -1e-9,
                                     -1e-7, -1e-6, -1e-5, -1e-4, -1e-3}) {
-          const Vec3 step = ((distance - touching + beyond) / distance) * away;
+          const Vec3 step = ((distance - touching + beyond) / distance) * displacement;
           const PackedCentre target = packed_box.wrapped(
               {centres[i].xy + Pair{step.x, step.y}, centres[i].z + step.z, centres[i].radius});
           bool expected = false;

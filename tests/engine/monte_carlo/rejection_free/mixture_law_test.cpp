@@ -28,7 +28,7 @@ double sign_flip_probability(const std::vector<double>& differences) {
   int as_far = 1;
   for (int k = 0; k < choices; ++k) {
     double sum = 0;
-    for (const double d : differences) sum += random.below(2) == 0 ? d : -d;
+    for (const double d : differences) sum += random.integer_below(2) == 0 ? d : -d;
     as_far += std::abs(sum) >= std::abs(observed) * (1 - 1e-12);
   }
   return as_far / (choices + 1.0);
@@ -38,8 +38,8 @@ double sign_flip_probability(const std::vector<double>& differences) {
 // with level / (k - 1), and so on.
 void check_all_by_holm(const std::vector<Comparison>& comparisons, double level) {
   std::vector<std::pair<double, std::string>> tests;
-  for (const Comparison& one : comparisons)
-    tests.emplace_back(sign_flip_probability(one.differences), one.quantity);
+  for (const Comparison& comparison : comparisons)
+    tests.emplace_back(sign_flip_probability(comparison.differences), comparison.quantity);
   std::ranges::sort(tests);
   for (std::size_t k = 0; k < tests.size(); ++k) {
     CAPTURE(tests[k].second, tests[k].first, k, tests.size());

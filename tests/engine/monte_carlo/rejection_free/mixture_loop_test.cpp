@@ -82,7 +82,7 @@ TEST_CASE("skipping makes no overlap in a mixture, is resumed, and is alike on e
                                              Sampler::rejection_free, SphereSizes::several);
         resumed->load(middle);
         resumed->restore(loop->state(), loop->sampler_state());
-        for (TrialLoop* const one : {loop.get(), resumed.get()}) one->run(100'000);
+        for (TrialLoop* const trial_loop : {loop.get(), resumed.get()}) trial_loop->run(100'000);
         CHECK(loop->tally().candidates > 50);
         CHECK(loop->tally().candidates < loop->tally().trials / 8);
         CHECK(stored(*loop, start).centres == stored(*resumed, start).centres);
@@ -112,7 +112,7 @@ TEST_CASE("eight spheres of ten diameters are skipped among small ones, and resu
     REQUIRE(loop->sampler_state().active);
     const auto resumed = skipping_loop(a, move);
     resumed->restore(loop->state(), loop->sampler_state());
-    for (TrialLoop* const one : {loop.get(), resumed.get()}) one->run(300'000);
+    for (TrialLoop* const trial_loop : {loop.get(), resumed.get()}) trial_loop->run(300'000);
     CHECK(loop->tally().candidates > 100);
     a = stored(*loop, start);
     CHECK(a.centres == stored(*resumed, start).centres);

@@ -103,15 +103,15 @@ StepSamples steps_from(const Packing& bed, const Move& move, Sampler sampler, in
     loop->begin_tap();
     loop->run(25 * n);
     if (sampler == Sampler::rejection_free) REQUIRE(loop->sampler_state().active);
-    Packing before = bed, after = bed;
-    loop->store(before);
+    Packing packing_before = bed, packing_after = bed;
+    loop->store(packing_before);
     loop->run(20 * n);
-    loop->store(after);
+    loop->store(packing_after);
     int moved = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      if (before.centres[i] == after.centres[i]) continue;
-      const Vec3 step =
-          separation(std::get<PeriodicBox>(bed.container), after.centres[i], before.centres[i]);
+      if (packing_before.centres[i] == packing_after.centres[i]) continue;
+      const Vec3 step = separation(std::get<PeriodicBox>(bed.container), packing_after.centres[i],
+                                   packing_before.centres[i]);
       samples.length.push_back(std::sqrt(norm_squared(step)));
       samples.fall.push_back(-step.z);
       ++moved;

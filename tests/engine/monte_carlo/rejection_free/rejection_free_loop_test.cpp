@@ -38,7 +38,7 @@ TEST_CASE("rejection-free sampling makes no overlap, and looks at few trials") {
     for (const Move& move : moves()) {
       const Packing start = random_packing(container, 60, 12, 5);
       const auto loop = rejection_free_loop(start, move);
-      const double before = loop->mean_height();
+      const double previous = loop->mean_height();
       constexpr std::uint64_t trials = 1'000'000;
       loop->run(trials);
       const Packing end = stored(*loop, start);
@@ -49,7 +49,7 @@ TEST_CASE("rejection-free sampling makes no overlap, and looks at few trials") {
       CHECK(loop->tally().candidates > 100);
       CHECK(loop->tally().candidates < trials / 10);
       CHECK(loop->mean_height() == mean_height(end));
-      CHECK(loop->mean_height() < 0.8 * before);
+      CHECK(loop->mean_height() < 0.8 * previous);
     }
   }
 }

@@ -16,10 +16,10 @@
 namespace jostle::ageing_paths {
 
 inline LogCurves curves_of(std::uint64_t seed, std::uint32_t m, const Paths& paths,
-                           Changes of = Changes::mean_square) {
+                           Changes kind = Changes::mean_square) {
   std::vector<std::uint32_t> all(m);
   std::iota(all.begin(), all.end(), 0u);
-  return log_curves(rows(seed, m, paths), grid, all, of);
+  return log_curves(rows(seed, m, paths), grid, all, kind);
 }
 
 inline double deviation(double share, double n) {

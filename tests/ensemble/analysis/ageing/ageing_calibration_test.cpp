@@ -31,8 +31,8 @@ void check_coverage(Laws laws, std::uint32_t m, const Paths& paths, int ensemble
     if (laws == Laws::own) {
       const LogCurves curves = curves_of(own_seed, m, paths);
       for (std::size_t k = 0; k < 3; ++k) {
-        found.push_back(own_law(curves.one(k)));
-        disowned += !AgeingLeastSquares(curves.one(k)).describes();
+        found.push_back(own_law(curves.single(k)));
+        disowned += !AgeingLeastSquares(curves.single(k)).describes();
       }
     } else {
       found = fit_ageing(rows(own_seed, m, paths), grid).shared;
@@ -51,8 +51,9 @@ void check_coverage(Laws laws, std::uint32_t m, const Paths& paths, int ensemble
   CAPTURE(m, paths.common_part, name(paths.memory));
   if (laws == Laws::own) CHECK(b.percent(disowned) <= 5 + 300 * deviation(0.05, b.n));
   // The three ages of a shared fit have one B.
-  for (const Held* one : {&a_inf, &b, &tau}) {
-    if (one->n > 0) one->check(laws == Laws::own || one == &b ? one->n : one->n / 3.0);
+  for (const Held* parameter : {&a_inf, &b, &tau}) {
+    if (parameter->n > 0)
+      parameter->check(laws == Laws::own || parameter == &b ? parameter->n : parameter->n / 3.0);
   }
 }
 
@@ -116,11 +117,11 @@ Paths with_drift_alone(Paths paths) {
 constexpr const char* test_heading =
     "\nof       memory common   M | none: found excluded, % | factor 10 | 100 | 400 up\n";
 
-Found print_rates(const char* what, std::uint32_t m, const Paths& paths,
+Found print_rates(const char* title, std::uint32_t m, const Paths& paths,
                   const std::vector<Found>& all) {
   std::string text;
-  for (const Found& one : all) text += one.text();
-  fmt::print("{:8} {:6} {:6.1f} {:3}{}\n", what, name(paths.memory), paths.common_part, m, text);
+  for (const Found& rates : all) text += rates.text();
+  fmt::print("{:8} {:6} {:6.1f} {:3}{}\n", title, name(paths.memory), paths.common_part, m, text);
   check_alarms(all[0]);
   return all.back();
 }

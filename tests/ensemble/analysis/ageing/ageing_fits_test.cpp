@@ -120,9 +120,9 @@ TEST_CASE(
       for (const AgeingLaw& law : {fits.own[k], fits.shared[k]}) {
         CAPTURE(k, law.verdict);
         CHECK(law.verdict.find("does not describe") != std::string::npos);
-        for (const LogEstimate& one : {law.a_inf, law.b}) {
-          CHECK(one.low_95 == 0);
-          CHECK(std::isinf(one.high_95));
+        for (const LogEstimate& estimate : {law.a_inf, law.b}) {
+          CHECK(estimate.low_95 == 0);
+          CHECK(std::isinf(estimate.high_95));
         }
         CHECK_FALSE(law.is_determined());
       }
@@ -148,7 +148,7 @@ TEST_CASE("Errors of scaled curves include those of their scales", "[statistics]
   for (std::size_t k = 0; k < 3; ++k) {
     // At one lag its own error and those of the scales, a slope of 1 at most, add up or cancel.
     const auto relative = [](const LogEstimate& x) { return x.error / x.value; };
-    const std::size_t i = curves.at(k, 20);
+    const std::size_t i = curves.index_of(k, 20);
     const double point = relative(curves.a[i]);
     const double scales = relative(fits.shared[k].a_inf) + relative(fits.shared[k].tau);
     CAPTURE(k, scales, point, fits.scaled_error[i]);
@@ -220,8 +220,8 @@ TEST_CASE(
 
 TEST_CASE("Ageing tables do not depend on the number of threads") {
   const TapRows rows = eq_6_rows(3, 12);
-  const auto one = numbers(ageing_table("ageing", height, rows, grid, 1));
-  CHECK(one == numbers(ageing_table("ageing", height, rows, grid, 2)));
+  const auto single = numbers(ageing_table("ageing", height, rows, grid, 1));
+  CHECK(single == numbers(ageing_table("ageing", height, rows, grid, 2)));
 }
 
 TEST_CASE("Too few realizations for a fit are named, with what to do") {

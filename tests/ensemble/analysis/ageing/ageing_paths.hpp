@@ -35,7 +35,7 @@ inline TapRows rows(std::uint64_t seed, std::uint32_t realizations, const Paths&
   RandomStream random = test_stream(seed);
   TapRows rows{.taps = taps_of(grid), .realizations = realizations, .values = {}};
   std::vector<double> own(realizations), at_start(realizations);
-  double before = 0;
+  double previous = 0;
   for (const std::uint64_t tap : rows.taps) {
     const std::uint64_t k = tap / 1000000, lag = tap % 1000000;
     if (lag == 0) {
@@ -44,21 +44,21 @@ inline TapRows rows(std::uint64_t seed, std::uint32_t realizations, const Paths&
         at_start[r] = noise(random);
         rows.values.push_back(10);
       }
-      before = 0;
+      previous = 0;
       continue;
     }
     const double p[] = {paths.a_inf[k], paths.b[k], paths.tau[k]};
-    const double here = Ageing().value(static_cast<double>(lag), p);
+    const double current = Ageing().value(static_cast<double>(lag), p);
     for (std::uint32_t r = 0; r < realizations; ++r) {
       if (paths.memory == Memory::long_) {
-        own[r] += std::sqrt(here - before) * noise(random);
+        own[r] += std::sqrt(current - previous) * noise(random);
       } else {
-        own[r] = std::sqrt(here / 2) * (at_start[r] + noise(random));
+        own[r] = std::sqrt(current / 2) * (at_start[r] + noise(random));
       }
-      rows.values.push_back(10 + paths.drift[k] * std::sqrt(paths.common_part * here) +
+      rows.values.push_back(10 + paths.drift[k] * std::sqrt(paths.common_part * current) +
                             std::sqrt(1 - paths.common_part) * own[r]);
     }
-    before = here;
+    previous = current;
   }
   return rows;
 }

@@ -18,7 +18,9 @@ struct Ensemble {
   std::uint32_t realizations;
   std::vector<double> series;  // [n_taps, n_realizations]
 
-  double at(std::uint64_t tap, std::uint32_t r) const { return series[tap * realizations + r]; }
+  double value_at(std::uint64_t tap, std::uint32_t r) const {
+    return series[tap * realizations + r];
+  }
 };
 
 // One value a tap: step(x before, tap, random).
@@ -95,17 +97,17 @@ TEST_CASE("Two-time functions agree with sums written out") {
       const std::uint64_t wait = all.waiting_times[k], late = wait + all.lags[j];
       double n = 0, a = 0, x = 0, y = 0, xx = 0, xy = 0, d = 0;
       for (std::uint32_t r = 0; r < 7 && late < 40; ++r) {
-        const double before = ensemble.at(wait, r), after = ensemble.at(late, r);
-        if (std::isnan(before) || std::isnan(after)) continue;
+        const double previous = ensemble.value_at(wait, r), following = ensemble.value_at(late, r);
+        if (std::isnan(previous) || std::isnan(following)) continue;
         n += 1;
-        a += (after - before) * (after - before);
-        x += before;
-        y += after;
-        xx += before * before;
-        xy += before * after;
-        d += after - before;
+        a += (following - previous) * (following - previous);
+        x += previous;
+        y += following;
+        xx += previous * previous;
+        xy += previous * following;
+        d += following - previous;
       }
-      const std::size_t i = curves.at(k, j);
+      const std::size_t i = curves.index_of(k, j);
       CAPTURE(wait, all.lags[j]);
       CHECK(static_cast<double>(curves.count[i]) == n);
       if (n == 0) {
@@ -123,16 +125,16 @@ TEST_CASE("Two-time functions agree with sums written out") {
 
 TEST_CASE("Errors of two-time functions are those of leaving realizations out one by one") {
   const Ensemble ensemble = autoregression(2, 30, 9);
-  const AgeingGrid one = {.waiting_times = {5}, .lags = {4}};
-  const AgeingCurves curves = curves_of(ensemble, one);
+  const AgeingGrid grid = {.waiting_times = {5}, .lags = {4}};
+  const AgeingCurves curves = curves_of(ensemble, grid);
   std::vector<double> a, v, c;
   for (std::uint32_t left_out = 0; left_out < 9; ++left_out) {
     Ensemble rest = ensemble;
     for (std::uint64_t t = 0; t < 30; ++t) rest.series[t * 9 + left_out] = std::nan("");
-    const AgeingCurves others = curves_of(rest, one);
-    a.push_back(others.a[0].value);
-    v.push_back(std::log(others.v[0].value));
-    c.push_back(others.c[0]);
+    const AgeingCurves rest_curves = curves_of(rest, grid);
+    a.push_back(rest_curves.a[0].value);
+    v.push_back(std::log(rest_curves.v[0].value));
+    c.push_back(rest_curves.c[0]);
   }
   const auto error = [](const std::vector<double>& values) {
     double mean = 0, sum = 0;
@@ -155,7 +157,7 @@ TEST_CASE("A random walk spreads alike at every age", "[statistics]") {
   const AgeingCurves curves = curves_of(random_walk(3, 201, 1000), grid);
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t j = 0; j < 3; ++j) {
-      const std::size_t i = curves.at(k, j);
+      const std::size_t i = curves.index_of(k, j);
       check(curves.a[i].value, curves.a[i].error, static_cast<double>(grid.lags[j]));
       if (k == 0) {
         CHECK(std::isnan(curves.c[i]));  // all start at 0
@@ -170,7 +172,7 @@ TEST_CASE("A stationary autoregression does not age", "[statistics]") {
   const AgeingCurves curves = curves_of(autoregression(4, 201, 1000), grid);
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t j = 0; j < 3; ++j) {
-      const std::size_t i = curves.at(k, j);
+      const std::size_t i = curves.index_of(k, j);
       const double c = std::pow(memory, static_cast<double>(grid.lags[j]));
       check(curves.a[i].value, curves.a[i].error, 2 * (1 - c));
       check(curves.c[i], curves.c_error[i], c);
@@ -182,13 +184,13 @@ TEST_CASE("A logarithmic drift ages", "[statistics]") {
   const AgeingCurves curves = curves_of(logarithmic_drift(5, 201, 1000), grid);
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t j = 0; j < 3; ++j) {
-      const std::size_t i = curves.at(k, j);
+      const std::size_t i = curves.index_of(k, j);
       const std::uint64_t wait = grid.waiting_times[k];
       const double drift = drift_at(wait + grid.lags[j]) - drift_at(wait);
       check(curves.a[i].value, curves.a[i].error, drift * drift + 2 * fluctuation * fluctuation);
       check(curves.c[i], curves.c_error[i], 0);
       if (k > 0 && j > 0) {
-        const std::size_t younger = curves.at(k - 1, j);
+        const std::size_t younger = curves.index_of(k - 1, j);
         CHECK(curves.a[younger].value - curves.a[i].value >
               3 * std::hypot(curves.a[younger].error, curves.a[i].error));
       }
@@ -199,7 +201,7 @@ TEST_CASE("A logarithmic drift ages", "[statistics]") {
 TEST_CASE("Intervals of A hold the truth at their stated rate", "[statistics]") {
   // A is a mean of squares, which are skewed: A +- t error, beside it, does not.
   constexpr int ensembles = 1000;
-  const AgeingGrid one = {.waiting_times = {5}, .lags = {10}};
+  const AgeingGrid grid = {.waiting_times = {5}, .lags = {10}};
   std::string table =
       "\nprocess          M   68 %   95 %   of A +- t error: 68 %   95 %   (share that holds the "
       "truth)\n";
@@ -210,12 +212,12 @@ TEST_CASE("Intervals of A hold the truth at their stated rate", "[statistics]") 
       for (int e = 0; e < ensembles; ++e) {
         const std::uint64_t seed = 100'000 * m + static_cast<std::uint64_t>(e);
         const Ensemble ensemble = steady ? autoregression(seed, 16, m) : random_walk(seed, 16, m);
-        const LogEstimate a = curves_of(ensemble, one).a[0];
+        const LogEstimate a = curves_of(ensemble, grid).a[0];
         held[0] += a.low_68 <= exact && exact <= a.high_68;
         held[1] += a.low_95 <= exact && exact <= a.high_95;
         double squares = 0;
         for (std::uint32_t r = 0; r < m; ++r) {
-          const double change = ensemble.at(15, r) - ensemble.at(5, r);
+          const double change = ensemble.value_at(15, r) - ensemble.value_at(5, r);
           squares += std::pow(change * change - a.value, 2);
         }
         const double error = std::sqrt(squares / (m * (m - 1)));
@@ -240,7 +242,7 @@ TEST_CASE("Intervals of A hold the truth at their stated rate", "[statistics]") 
 
 TEST_CASE("Intervals of V hold the truth at their stated rate", "[statistics]") {
   constexpr int ensembles = 1000;
-  const AgeingGrid one = {.waiting_times = {5}, .lags = {10}};
+  const AgeingGrid grid = {.waiting_times = {5}, .lags = {10}};
   std::string table = "\nprocess               M   68 %   95 %   (share that holds the truth)\n";
   for (const std::uint32_t m : {4u, 10u, 20u}) {
     for (const bool steady : {false, true}) {
@@ -250,7 +252,7 @@ TEST_CASE("Intervals of V hold the truth at their stated rate", "[statistics]") 
         const std::uint64_t seed = 900'000 * m + static_cast<std::uint64_t>(e);
         Ensemble ensemble = steady ? autoregression(seed, 16, m) : random_walk(seed, 16, m);
         for (std::uint32_t r = 0; r < m; ++r) ensemble.series[15 * m + r] += 7;  // all alike
-        const LogEstimate v = curves_of(ensemble, one).v[0];
+        const LogEstimate v = curves_of(ensemble, grid).v[0];
         held_68 += v.low_68 <= exact && exact <= v.high_68;
         held_95 += v.low_95 <= exact && exact <= v.high_95;
       }
@@ -265,7 +267,7 @@ TEST_CASE("Intervals of V hold the truth at their stated rate", "[statistics]") 
     }
   }
   fmt::print("{}", table);
-  const LogEstimate three = curves_of(random_walk(1, 16, 3), one).v[0];
+  const LogEstimate three = curves_of(random_walk(1, 16, 3), grid).v[0];
   CHECK(three.value > 0);
   CHECK(std::isnan(three.error));
 }

@@ -33,14 +33,14 @@ LogCurves one_path(std::uint64_t seed, std::uint32_t m, double (*g)(double), dou
   RandomStream random = test_stream(seed);
   TapRows rows{.taps = taps_of(grid), .realizations = m, .values = {}};
   std::vector<double> path(m, 0.0);
-  double before = g(static_cast<double>(rows.taps.front()));
+  double previous = g(static_cast<double>(rows.taps.front()));
   for (const std::uint64_t tap : rows.taps) {
-    const double here = g(static_cast<double>(tap));
+    const double current = g(static_cast<double>(tap));
     for (double& x : path) {
-      x += std::sqrt(here - before) * noise(random) + drift * (here - before);
+      x += std::sqrt(current - previous) * noise(random) + drift * (current - previous);
       rows.values.push_back(x);
     }
-    before = here;
+    previous = current;
   }
   std::vector<std::uint32_t> all(m);
   std::iota(all.begin(), all.end(), 0u);
@@ -64,8 +64,8 @@ struct Rates {
     power.add(found.collapse, "collapse not refuted");
     logarithmic.add(logarithmic_collapse(curves, ages, "a"), "collapse not refuted");
   }
-  void print(const std::string& of, std::uint32_t m) const {
-    fmt::print("{:12} {:3}{}{}{}\n", of, m, mu.text(), power.text(), logarithmic.text());
+  void print(const std::string& title, std::uint32_t m) const {
+    fmt::print("{:12} {:3}{}{}{}\n", title, m, mu.text(), power.text(), logarithmic.text());
   }
 };
 
@@ -78,13 +78,13 @@ Rates rates_of_power(double mu, std::uint32_t m, Paths paths, int n, std::uint64
   return rates;
 }
 
-Rates rates_of_path(const char* of, double mu, double (*g)(double), std::uint32_t m, int n,
+Rates rates_of_path(const char* title, double mu, double (*g)(double), std::uint32_t m, int n,
                     std::uint64_t seed, double drift = 0) {
   Rates rates;
   for (int e = 0; e < n; ++e) {
     rates.add(one_path(seed + static_cast<std::uint64_t>(e), m, g, drift), mu);
   }
-  rates.print(of, m);
+  rates.print(title, m);
   return rates;
 }
 

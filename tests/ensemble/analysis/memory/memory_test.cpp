@@ -32,7 +32,7 @@ std::vector<History> histories(const Setting& setting, double offset, std::uint6
     common.push_back(synthetic::autoregressive(setting.rho, 101, seed, 100 + r));
   for (std::size_t i = 0; i < 3; ++i) {
     History& history = all[i];
-    history.after.assign(windows.size() * m, 0);
+    history.responses.assign(windows.size() * m, 0);
     synthetic::Gaussian gaussian(seed, i);
     for (std::size_t r = 0; r < m; ++r) {
       const double x = 0.01 * static_cast<double>(i) + 0.1 * gaussian();
@@ -47,7 +47,7 @@ std::vector<History> histories(const Setting& setting, double offset, std::uint6
           const double noise = setting.shared * common[r][lag] + (1 - setting.shared) * own[lag];
           sum += 1 - (1 - x) * fade + scale * noise + (i == 1 ? offset * fade : 0);
         }
-        history.after[w * m + r] =
+        history.responses[w * m + r] =
             sum / static_cast<double>(windows[w].last + 1 - windows[w].first);
       }
     }
@@ -73,17 +73,17 @@ TEST_CASE("Histories are compared at equal values at the switch") {
   // After the switch 2 x + 1 exactly: what differs is the value at the switch alone.
   std::vector<History> all = {{0.1, 10, {0.50, 0.52, 0.57}, {}}, {0.2, 20, {0.60, 0.61, 0.64}, {}}};
   for (History& history : all) {
-    for (const double x : history.at_switch) history.after.push_back(2 * x + 1);
+    for (const double x : history.at_switch) history.responses.push_back(2 * x + 1);
   }
-  const MemoryTest same = memory_test(all, lag_windows(1));
-  REQUIRE(same.differences.size() == 1);
-  CHECK(std::abs(same.differences[0].value) < 1e-12);
-  for (double& after : all[1].after) after += 0.125;
-  const MemoryTest other = memory_test(all, lag_windows(1));
-  CHECK(other.differences[0].value == Approx(0.125).epsilon(1e-10));
-  CHECK(other.differences[0].error.dof == 1);
+  const MemoryTest equal_test = memory_test(all, lag_windows(1));
+  REQUIRE(equal_test.differences.size() == 1);
+  CHECK(std::abs(equal_test.differences[0].value) < 1e-12);
+  for (double& response : all[1].responses) response += 0.125;
+  const MemoryTest shifted = memory_test(all, lag_windows(1));
+  CHECK(shifted.differences[0].value == Approx(0.125).epsilon(1e-10));
+  CHECK(shifted.differences[0].error.dof == 1);
   CHECK(
-      other.statement("phi", "dilate")
+      shifted.statement("phi", "dilate")
           .starts_with("phi alone is not the state: after dilate 0.1 and 0.2 responses differ by"));
   // One strength reached in two ways: by number.
   all[1].strength = 0.1;
@@ -101,7 +101,8 @@ TEST_CASE("Differences and their errors are those of a straight line, sum by sum
     double sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
     for (std::size_t r = 0; r < m; ++r) {
       const double x = second.at_switch[r] - first.at_switch[r];
-      const double y = second.after[found.window * m + r] - first.after[found.window * m + r] - x;
+      const double y =
+          second.responses[found.window * m + r] - first.responses[found.window * m + r] - x;
       sx += x;
       sy += y;
       sxx += x * x;
@@ -112,10 +113,10 @@ TEST_CASE("Differences and their errors are those of a straight line, sum by sum
     const double determinant = n * sxx - sx * sx;
     const double slope = (n * sxy - sx * sy) / determinant;
     const double value = (sy - slope * sx) / n;
-    const double about = syy - value * sy - slope * sxy;
+    const double residual_sum = syy - value * sy - slope * sxy;
     CHECK(found.value == Approx(value).epsilon(1e-9));
     CHECK(found.error.error ==
-          Approx(std::sqrt(about / (n - 2) * sxx / determinant)).epsilon(1e-6));
+          Approx(std::sqrt(residual_sum / (n - 2) * sxx / determinant)).epsilon(1e-6));
     CHECK(found.error.dof == n - 2);
   }
 }
@@ -185,11 +186,11 @@ void check_rates(const std::vector<std::size_t>& all_realizations) {
         const double size = still.detectable();
         detectable += size / ensembles;
         // The offset fades: as large at the first lag, and seen by pairs 0-1 and 1-2.
-        const std::string with =
+        const std::string text_with =
             memory_test(histories(setting, size * std::exp(1.0 / 30), seed), windows)
                 .statement("phi", "dilate");
-        found += with.starts_with("phi alone is not");
-        missed += with.starts_with("no memory");
+        found += text_with.starts_with("phi alone is not");
+        missed += text_with.starts_with("no memory");
       }
       const auto percent = [&](std::size_t n) {
         return 100.0 * static_cast<double>(n) / ensembles;

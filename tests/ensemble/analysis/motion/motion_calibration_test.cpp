@@ -34,13 +34,14 @@ struct Coverage {
     in_68 += low_68 <= truth && truth <= high_68;
     in_95 += low_95 <= truth && truth <= high_95;
   }
-  void add(double truth, const LogEstimate& one) {
-    add(truth, one.low_68, one.high_68, one.low_95, one.high_95);
+  void add(double truth, const LogEstimate& estimate) {
+    add(truth, estimate.low_68, estimate.high_68, estimate.low_95, estimate.high_95);
   }
-  void add(double truth, const MeanEstimate& one) {
-    const double by_68 = one.error * student_two_sided(interval_levels[0], one.dof),
-                 by_95 = one.error * student_two_sided(interval_levels[1], one.dof);
-    add(truth, one.value - by_68, one.value + by_68, one.value - by_95, one.value + by_95);
+  void add(double truth, const MeanEstimate& estimate) {
+    const double by_68 = estimate.error * student_two_sided(interval_levels[0], estimate.dof),
+                 by_95 = estimate.error * student_two_sided(interval_levels[1], estimate.dof);
+    add(truth, estimate.value - by_68, estimate.value + by_68, estimate.value - by_95,
+        estimate.value + by_95);
   }
   double share_68() const { return static_cast<double>(in_68) / n; }
   double share_95() const { return static_cast<double>(in_95) / n; }
@@ -68,10 +69,10 @@ MotionRecords walks(std::size_t realizations, std::size_t group, bool mobile, do
       origin.tap = settings.origins[o];
       origin.centres.resize(n_spheres);
       std::vector<Vec3> now(n_spheres);
-      std::uint64_t at = 0;
+      std::uint64_t index = 0;
       for (const std::uint64_t lag : settings.lags) {
-        const double step = std::sqrt(static_cast<double>(lag - at) * (o == 1 ? slowing : 1.0));
-        at = lag;
+        const double step = std::sqrt(static_cast<double>(lag - index) * (o == 1 ? slowing : 1.0));
+        index = lag;
         Vec3 common;
         for (std::size_t i = 0; i < n_spheres; ++i) {
           const double scale = (mobile && (i / group) % 10 == 0 ? 0.09 : 0.03) * step;
@@ -151,8 +152,9 @@ TEST_CASE("Layers that move at their own rates, sphere by sphere, are not taken 
     const int ensembles = 400;
     for (int e = 0; e < ensembles; ++e) {
       const MotionRecords records = sheared(4, spheres, layers, ratio, gaussian);
-      for (const double one : independent_susceptibility(records, "layer_lateral_overlap", 0, 0, 0))
-        independent.add(one);
+      for (const double value :
+           independent_susceptibility(records, "layer_lateral_overlap", 0, 0, 0))
+        independent.add(value);
       for (const double q : records.row("lateral_overlap", 0, 0)) of_bed.add(q * (1 - q));
       chi_4.add(four_point_susceptibility(records.row("lateral_overlap", 0, 0), spheres).value);
       for (std::uint32_t k = 0; k < layers; ++k) {
@@ -171,9 +173,9 @@ TEST_CASE("Layers that move at their own rates, sphere by sphere, are not taken 
     CHECK(vertical_of_bed.mean() > 0.5);
   }
   // One layer is the whole bed; a sphere alone in its layer no information.
-  const MotionRecords one = sheared(1, 200, 1, 1, gaussian);
-  const double q = one.row("lateral_overlap", 0, 0)[0];
-  CHECK(independent_susceptibility(one, "layer_lateral_overlap", 0, 0, 0)[0] ==
+  const MotionRecords records = sheared(1, 200, 1, 1, gaussian);
+  const double q = records.row("lateral_overlap", 0, 0)[0];
+  CHECK(independent_susceptibility(records, "layer_lateral_overlap", 0, 0, 0)[0] ==
         Approx(q * (1 - q) * 200 / 199));
   const MotionRecords alone = sheared(1, 8, 8, 1.1, gaussian);
   CHECK(std::isnan(independent_susceptibility(alone, "layer_overlap", 0, 0, 0)[0]));
@@ -185,8 +187,8 @@ TEST_CASE("Groups that move together are above the reference of layers") {
   for (int e = 0; e < 200; ++e) {
     const MotionRecords records = walks(4, 16, false, 1, random);
     chi_4.add(four_point_susceptibility(records.row("lateral_overlap", 0, 2), n_spheres).value);
-    for (const double one : independent_susceptibility(records, "layer_lateral_overlap", 0, 2, 0))
-      reference.add(one);
+    for (const double value : independent_susceptibility(records, "layer_lateral_overlap", 0, 2, 0))
+      reference.add(value);
   }
   CHECK(chi_4.mean() > 10 * reference.mean());
 }
@@ -211,10 +213,10 @@ TEST_CASE("Intervals of chi_4 hold the truth at their stated rate", "[statistics
         Moments values;
         const double truth = static_cast<double>(group) * p * (1 - p);
         for (int e = 0; e < ensembles; ++e) {
-          const LogEstimate one =
+          const LogEstimate estimate =
               four_point_susceptibility(overlaps(realizations, group, p, random), n_spheres);
-          found.add(truth, one);
-          values.add(one.value);
+          found.add(truth, estimate);
+          values.add(estimate.value);
         }
         fmt::print("{:>3} {:>6} {:>5} | {:>6.1f}% {:>6.1f}% {:>7.0f}% {:>9.3f}\n", realizations,
                    group, p, 100 * found.share_68(), 100 * found.share_95(),
@@ -249,11 +251,12 @@ TEST_CASE("Errors of mean squares, overlaps, exponents and ratios hold the truth
                                                              {"overlap", &overlap},
                                                              {"exponent", &exponent},
                                                              {"ratio", &ratio}};
-      for (const auto& [name, one] : all) {
+      for (const auto& [name, coverage] : all) {
         CAPTURE(name);
         fmt::print("{:>3} {:>6} {:>9} | {:>6.1f}% {:>6.1f}%\n", realizations,
-                   mobile ? "mixed" : "alike", name, 100 * one->share_68(), 100 * one->share_95());
-        require(*one);
+                   mobile ? "mixed" : "alike", name, 100 * coverage->share_68(),
+                   100 * coverage->share_95());
+        require(*coverage);
       }
     }
   std::fflush(stdout);
@@ -313,14 +316,14 @@ TEST_CASE("Beds of unlike mobility are one ensemble of displacements", "[statist
       of_lateral.add(truth, sideways);
       of_vertical.add(truth, upwards);
     }
-    for (const Moments* one : {&lateral, &vertical}) {
-      CHECK((one->mean() + 1) / (truth + 1) >= 0.94);
-      CHECK((one->mean() + 1) / (truth + 1) <= 1.01);
+    for (const Moments* moments : {&lateral, &vertical}) {
+      CHECK((moments->mean() + 1) / (truth + 1) >= 0.94);
+      CHECK((moments->mean() + 1) / (truth + 1) <= 1.01);
     }
-    for (const Coverage* one : {&of_lateral, &of_vertical}) {
+    for (const Coverage* coverage : {&of_lateral, &of_vertical}) {
       fmt::print("{:>3} beds of unlike mobility | {:>6.1f}% {:>6.1f}%\n", realizations,
-                 100 * one->share_68(), 100 * one->share_95());
-      CHECK(one->share_95() >= 0.80);
+                 100 * coverage->share_68(), 100 * coverage->share_95());
+      CHECK(coverage->share_95() >= 0.80);
     }
   }
   std::fflush(stdout);
@@ -330,9 +333,9 @@ TEST_CASE("A realization of which nothing is there yet counts for nothing") {
   RandomStream random = test_stream(47);
   const MotionRecords whole = walks(3, 1, false, 1, random);
   MotionRecords begun(whole.settings, n_spheres, 4);  // NaN all over
-  const auto widen = [](const std::vector<double>& from, std::vector<double>& to) {
-    REQUIRE(to.size() == from.size() / 3 * 4);
-    for (std::size_t i = 0; i < from.size(); ++i) to[i / 3 * 4 + i % 3] = from[i];
+  const auto widen = [](const std::vector<double>& source, std::vector<double>& widened) {
+    REQUIRE(widened.size() == source.size() / 3 * 4);
+    for (std::size_t i = 0; i < source.size(); ++i) widened[i / 3 * 4 + i % 3] = source[i];
   };
   for (std::size_t i = 0; i < whole.values.size(); ++i) widen(whole.values[i], begun.values[i]);
   widen(whole.layer_height, begun.layer_height);

@@ -44,11 +44,11 @@ double brute_force_p(const std::vector<OrderingTime>& times, std::size_t n) {
   const double observed = observed_less_expected(times, n);
   int all = 0, reached = 0;
   for (unsigned subset = 0; subset < 1U << times.size(); ++subset) {
-    std::vector<OrderingTime> own, others;
+    std::vector<OrderingTime> own, second;
     for (std::size_t i = 0; i < times.size(); ++i)
-      ((subset >> i & 1U) != 0 ? own : others).push_back(times[i]);
+      ((subset >> i & 1U) != 0 ? own : second).push_back(times[i]);
     if (own.size() != n) continue;
-    own.insert(own.end(), others.begin(), others.end());
+    own.insert(own.end(), second.begin(), second.end());
     ++all;
     reached += observed_less_expected(own, n) >= observed - 1e-9 ? 1 : 0;
   }
@@ -81,13 +81,13 @@ TEST_CASE("Limits of a share are Clopper and Pearson's") {
   CHECK(share_limits(3, 3, 0.95).high == 1);
   // 3 of 10: sums of binomial probabilities, at either limit.
   const Limits limits = share_limits(3, 10, 0.95);
-  double more = 0, less = 0;
+  double later = 0, less = 0;
   for (int k = 0; k <= 10; ++k) {
     const double ways = std::tgamma(11) / (std::tgamma(k + 1) * std::tgamma(11 - k));
-    if (k >= 3) more += ways * std::pow(limits.low, k) * std::pow(1 - limits.low, 10 - k);
+    if (k >= 3) later += ways * std::pow(limits.low, k) * std::pow(1 - limits.low, 10 - k);
     if (k <= 3) less += ways * std::pow(limits.high, k) * std::pow(1 - limits.high, 10 - k);
   }
-  CHECK(more == Approx(0.025).epsilon(1e-8));
+  CHECK(later == Approx(0.025).epsilon(1e-8));
   CHECK(less == Approx(0.025).epsilon(1e-8));
 }
 
@@ -135,15 +135,15 @@ TEST_CASE("Log-rank scores add up to events less those expected") {
 TEST_CASE("The test of earlier times goes through all ways of sharing them out") {
   const std::vector<OrderingTime> early = {{3, true}, {5, true}, {9, true}, {40, false}};
   const std::vector<OrderingTime> late = {{5, true}, {30, true}, {40, false}, {40, false}};
-  std::vector<OrderingTime> both = early;
-  both.insert(both.end(), late.begin(), late.end());
+  std::vector<OrderingTime> all_times = early;
+  all_times.insert(all_times.end(), late.begin(), late.end());
   const EarlierTest test =
       earlier(ensemble_of(early, 40), ensemble_of(late, 40), Streams::independent);
-  CHECK(test.p == Approx(brute_force_p(both, 4)).epsilon(1e-12));
+  CHECK(test.p == Approx(brute_force_p(all_times, 4)).epsilon(1e-12));
   CHECK(test.least == Approx(1.0 / 70));
 
   SECTION("ends of two lengths are cut to the shorter") {
-    std::vector<OrderingTime> cut = both;
+    std::vector<OrderingTime> cut = all_times;
     for (OrderingTime& time : cut)
       if (time.tap > 20) time = {20, false};
     CHECK(earlier(ensemble_of(early, 40), ensemble_of({cut.begin() + 4, cut.end()}, 20),
@@ -160,12 +160,12 @@ TEST_CASE("The test of earlier times goes through all ways of sharing them out")
   }
   SECTION("random ways agree with all of them, and are always the same") {
     const std::vector<OrderingTime> ten = ordered_at({3, 4, 6, 8, 9, 12, 15, 21, 30, 31});
-    const std::vector<OrderingTime> other = ordered_at({5, 7, 10, 14, 18, 20, 25, 33, 35, 38});
+    const std::vector<OrderingTime> second = ordered_at({5, 7, 10, 14, 18, 20, 25, 33, 35, 38});
     const auto p = [&] {
-      return earlier(ensemble_of(ten, 40), ensemble_of(other, 40), Streams::independent).p;
+      return earlier(ensemble_of(ten, 40), ensemble_of(second, 40), Streams::independent).p;
     };
     std::vector<OrderingTime> pooled = ten;
-    pooled.insert(pooled.end(), other.begin(), other.end());
+    pooled.insert(pooled.end(), second.begin(), second.end());
     const std::vector<double> scores = log_rank_scores(pooled);
     double variance = 0;  // variance of the sum of half of them
     for (const double score : scores) variance += score * score * 10 / (20 - 1.0) * 0.5;
@@ -223,12 +223,12 @@ TEST_CASE("Growth rates are slopes on t and on its logarithm") {
 
 TEST_CASE("A comparison names the point that orders first and the one that ends highest") {
   const auto point = [](const char* label, std::uint64_t tap, double value) {
-    OrderingPoint out{label, ensemble_of({}, 400), {}, Verdict::reached};
+    OrderingPoint result{label, ensemble_of({}, 400), {}, Verdict::reached};
     for (std::uint64_t r = 0; r < 6; ++r) {
-      out.times.of_realization.push_back(OrderingTime{tap + r, true});
-      out.last_values.push_back(value + 0.001 * static_cast<double>(r));
+      result.times.of_realization.push_back(OrderingTime{tap + r, true});
+      result.last_values.push_back(value + 0.001 * static_cast<double>(r));
     }
-    return out;
+    return result;
   };
   std::vector<OrderingPoint> points = {point("lift=0.2", 300, 0.66), point("lift=0.3", 40, 0.64),
                                        point("lift=0.4", 150, 0.62)};
@@ -274,15 +274,15 @@ TEST_CASE("A comparison names the point that orders first and the one that ends 
     CHECK_THAT(
         note(compare(), "orders_first"),
         Catch::StartsWith("exact tie of lift=0.2, lift=0.3; may be first: lift=0.2, lift=0.3"));
-    for (OrderingPoint& one : points)
-      for (auto& time : one.times.of_realization) time = OrderingTime{0, true};
+    for (OrderingPoint& ordering_point : points)
+      for (auto& time : ordering_point.times.of_realization) time = OrderingTime{0, true};
     CHECK_THAT(note(compare(), "orders_first"),
                Catch::StartsWith("exact tie of lift=0.2, lift=0.3, lift=0.4; "));
   }
   SECTION("three realizations cannot exclude a point") {
-    for (OrderingPoint& one : points) {
-      one.times.of_realization.resize(3);
-      one.last_values.resize(3);
+    for (OrderingPoint& ordering_point : points) {
+      ordering_point.times.of_realization.resize(3);
+      ordering_point.last_values.resize(3);
     }
     CHECK_THAT(note(compare(), "orders_first"), Catch::StartsWith("cannot decide"));
     CHECK_THAT(note(compare(), "verdict"), Catch::StartsWith("cannot decide"));

@@ -242,7 +242,7 @@ TEST_CASE("A constant series has neither drift nor slope, in words without a num
     for (std::size_t r = 0; r < realizations; ++r) analysis.add(std::vector<double>(128, 0.1));
     const Table table = analysis.table();
     const auto note = [&](const std::string& name) {
-      return std::ranges::find(table.notes, name, [](const auto& one) { return one.first; })
+      return std::ranges::find(table.notes, name, [](const auto& entry) { return entry.first; })
           ->second;
     };
     CHECK(note("drift") == "no drift: the series is constant");

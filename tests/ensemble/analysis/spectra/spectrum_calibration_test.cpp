@@ -37,7 +37,7 @@ void check(const std::vector<std::size_t>& all_realizations, std::size_t ensembl
   for (const std::size_t realizations : all_realizations) {
     for (const double rho : {0.5, 0.9, 0.99}) {
       Moments slopes, expected;
-      double other = 0, found = 0;
+      double second = 0, found = 0;
       for (std::size_t e = 0; e < ensembles; ++e) {
         std::vector<std::vector<double>> ensemble, mixture;
         for (std::size_t r = 0; r < realizations; ++r) {
@@ -55,10 +55,10 @@ void check(const std::vector<std::size_t>& all_realizations, std::size_t ensembl
         const Table table = analysed(ensemble, {});
         slopes.add(number(table, "slope"));
         expected.add(number(table, "ar1_slope"));
-        other += number(table, "ar1_slope_p") < 0.05;
+        second += number(table, "ar1_slope_p") < 0.05;
         found += number(analysed(mixture, {}), "ar1_slope_p") < 0.05;
       }
-      const double share = other / static_cast<double>(ensembles);
+      const double share = second / static_cast<double>(ensembles);
       fmt::print("{:>3} {:>5} {:>5} | {:>7.3f} {:>9.3f} | {:>12.1f}% {:>10.1f}%\n", realizations,
                  n_taps, rho, slopes.mean(), expected.mean(), 100 * share,
                  100 * found / static_cast<double>(ensembles));
@@ -114,16 +114,16 @@ FalseAlarms false_alarms(std::size_t segment, std::size_t taps, double time,
                          std::size_t realizations, std::size_t ensembles) {
   const double rho = (2 * time - 1) / (2 * time + 1);
   FalseAlarms found;
-  double other = 0;
+  double second = 0;
   for (std::size_t e = 0; e < ensembles; ++e) {
     std::vector<std::vector<double>> ensemble;
     for (std::size_t r = 0; r < realizations; ++r)
       ensemble.push_back(synthetic::autoregressive(rho, taps, 20261129 + e, r));
     const Table table = analysed(ensemble, {.segment = segment});
     found.slopes.add(number(table, "slope"));
-    other += number(table, "ar1_slope_p") < 0.05;
+    second += number(table, "ar1_slope_p") < 0.05;
   }
-  found.share = other / static_cast<double>(ensembles);
+  found.share = second / static_cast<double>(ensembles);
   fmt::print(
       "segment {:>3}, {:>4} taps, tau {:>4}, M {:>2}: slope {:>7.3f} +- {:.3f}, called other "
       "{:.1f} %\n",

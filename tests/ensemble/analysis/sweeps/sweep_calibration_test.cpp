@@ -31,7 +31,7 @@ struct Counts {
   double slope_68 = 0, slope_95 = 0, straight = 0, difference = 0;
 };
 
-double at(const Setting& setting, std::size_t point) {
+double abscissa_of(const Setting& setting, std::size_t point) {
   return 0.1 + 0.4 * static_cast<double>(point) / static_cast<double>(setting.points - 1);
 }
 
@@ -46,7 +46,7 @@ SweepCurve curve_of(const Setting& setting, std::size_t ensemble, const Law& law
   for (std::size_t r = 0; r < setting.realizations; ++r)
     level.push_back(matched ? 2 * gaussian() : 0);
   for (std::size_t i = 0; i < setting.points; ++i) {
-    x.push_back(at(setting, i));
+    x.push_back(abscissa_of(setting, i));
     for (const double own : level) values[i].push_back(law(x.back()) + own + gaussian());
   }
   return {x, values, setting.streams};
@@ -57,26 +57,26 @@ bool holds(double truth, double value, const ErrorOf& error, double level) {
 }
 
 bool differs(const SweepCurve& curve) {
-  for (const SweepDifference& one : differences(curve, std::nullopt)) {
-    if (one.corrected < 0.05) return true;
+  for (const SweepDifference& difference : differences(curve, std::nullopt)) {
+    if (difference.corrected < 0.05) return true;
   }
   return false;
 }
 
 Counts calibrated(const Setting& setting, std::size_t ensembles) {
   Counts counts;
-  const double one = 1 / static_cast<double>(ensembles);
+  const double weight = 1 / static_cast<double>(ensembles);
   for (std::size_t e = 0; e < ensembles; ++e) {
     const SweepCurve flat = curve_of(setting, e, [](double) { return 0; });
     const bool high = maximum(flat).found(), low = minimum(flat).found();
-    counts.maximum_of_flat += one * high;
-    counts.minimum_of_flat += one * low;
-    counts.either_of_flat += one * (high || low);
-    counts.difference += one * differs(flat);
-    counts.unlike += one * (flat.p_of_equal_scatter() < 0.01);
+    counts.maximum_of_flat += weight * high;
+    counts.minimum_of_flat += weight * low;
+    counts.either_of_flat += weight * (high || low);
+    counts.difference += weight * differs(flat);
+    counts.unlike += weight * (flat.p_of_equal_scatter() < 0.01);
     const SweepCurve plateau =
         curve_of(setting, e, [](double x) { return -20 * std::exp(-10 * (x - 0.1)); });
-    counts.maximum_of_plateau += one * maximum(plateau).found();
+    counts.maximum_of_plateau += weight * maximum(plateau).found();
     const auto count_place = [](const SweepCurve& curve, double truth, double& found,
                                 double& held) {
       const SweepExtremum top = maximum(curve);
@@ -93,14 +93,14 @@ Counts calibrated(const Setting& setting, std::size_t ensembles) {
                          [](double x) { return x < 0.22 ? 100 * (x - 0.22) : -15 * (x - 0.22); }),
                 0.22, counts.maximum_of_skewed, counts.skewed);
     const StraightLine line = straight_line(curve_of(setting, e, [](double x) { return 5 * x; }));
-    counts.slope_68 += one * holds(5, line.slope, line.slope_error, 0.6827);
-    counts.slope_95 += one * holds(5, line.slope, line.slope_error, 0.95);
-    counts.straight += one * (line.p < 0.05);
+    counts.slope_68 += weight * holds(5, line.slope, line.slope_error, 0.6827);
+    counts.slope_95 += weight * holds(5, line.slope, line.slope_error, 0.95);
+    counts.straight += weight * (line.p < 0.05);
   }
   counts.place /= counts.maximum_of_bell;
   counts.skewed /= counts.maximum_of_skewed;
-  counts.maximum_of_bell *= one;
-  counts.maximum_of_skewed *= 0.5 * one;
+  counts.maximum_of_bell *= weight;
+  counts.maximum_of_skewed *= 0.5 * weight;
   return counts;
 }
 

@@ -43,7 +43,7 @@ std::vector<std::vector<double>> noisy_bell(std::uint64_t seed, std::size_t real
 
 TEST_CASE("The maximum of a parabola is found exactly, its points in any order") {
   std::vector<double> x = {0.3, 0.05, 0.1, 0.2, 0.15, 0.24}, y;
-  for (const double at : x) y.push_back(bell(at));
+  for (const double abscissa : x) y.push_back(bell(abscissa));
   x.push_back(0.12);
   y.push_back(none);  // dropped
   const SweepCurve curve(x, y, known(std::vector<double>(x.size(), 1e-6)));
@@ -86,9 +86,9 @@ TEST_CASE("A point with one realization has the error that is pooled over the ot
   CHECK_FALSE(curve.error().front().known());
   CHECK(straight_line(curve).slope_error.dof == 35);
   // One packing alone is common to all points of matched streams: nothing is known of its scatter.
-  const SweepExtremum one = maximum(SweepCurve(strengths, values, Streams::matched), 6);
-  CHECK(std::isfinite(one.x));
-  CHECK(std::isnan(one.p));
+  const SweepExtremum extremum = maximum(SweepCurve(strengths, values, Streams::matched), 6);
+  CHECK(std::isfinite(extremum.x));
+  CHECK(std::isnan(extremum.p));
   for (auto& realizations : values) realizations.resize(1);
   const SweepCurve lone(strengths, values, Streams::independent);
   CHECK(maximum(lone).verdict == "cannot decide: there are no errors to test a maximum by");
@@ -212,15 +212,15 @@ TEST_CASE("Differences of matched streams are taken realization by realization")
 
   const auto of_last = differences(SweepCurve({1, 2, 3}, values, Streams::independent), 2);
   REQUIRE(of_last.size() == 2);
-  CHECK(of_last[1].from == 2);
-  CHECK(of_last[1].to == 1);
+  CHECK(of_last[1].start == 2);
+  CHECK(of_last[1].end == 1);
   // Welch's test, of three and of four.
-  Moments few, more;
+  Moments few, large;
   for (const double value : values[1]) few.add(value);
-  for (const double value : values[2]) more.add(value);
-  CHECK(of_last[1].value == Approx(few.mean() - more.mean()));
+  for (const double value : values[2]) large.add(value);
+  CHECK(of_last[1].value == Approx(few.mean() - large.mean()));
   CHECK(of_last[1].error.error ==
-        Approx(std::hypot(few.standard_error(), more.standard_error())).epsilon(1e-12));
+        Approx(std::hypot(few.standard_error(), large.standard_error())).epsilon(1e-12));
   CHECK(of_last[1].error.dof > 2);
   CHECK(of_last[1].error.dof < 5);
 }
@@ -315,9 +315,9 @@ TEST_CASE("Points of few realizations have errors by the pooled variance beside 
   // Matched streams: what realizations share counts in the error of a point.
   const Table matched = table_of(4, Streams::matched);
   CHECK(values(matched, "phi_pooled_error")[0] > 0);
-  const Table many = table_of(10, Streams::independent);
-  CHECK(std::ranges::find(many.quantities, std::string("phi_pooled_error"), &Quantity::name) ==
-        many.quantities.end());
+  const Table large_table = table_of(10, Streams::independent);
+  CHECK(std::ranges::find(large_table.quantities, std::string("phi_pooled_error"),
+                          &Quantity::name) == large_table.quantities.end());
 }
 
 }  // namespace jostle

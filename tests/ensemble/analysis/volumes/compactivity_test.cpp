@@ -82,9 +82,9 @@ Ensemble ensemble(Kind kind, const Setting& setting, std::uint64_t seed) {
 struct Coverage {
   std::size_t held_68 = 0, held_95 = 0;
   void add(const Jackknifed& found, double truth) {
-    const double off = std::abs(found.value - truth) / found.error.error;
-    held_68 += off < student_two_sided(interval_levels[0], found.error.dof);
-    held_95 += off < student_two_sided(interval_levels[1], found.error.dof);
+    const double deviation = std::abs(found.value - truth) / found.error.error;
+    held_68 += deviation < student_two_sided(interval_levels[0], found.error.dof);
+    held_95 += deviation < student_two_sided(interval_levels[1], found.error.dof);
   }
   void add(const LogEstimate& found, double truth) {
     held_68 += found.low_68 < truth && truth < found.high_68;
@@ -122,10 +122,10 @@ double deviation(double share, std::size_t n) {
 }
 
 void check_coverage(const Coverage& coverage, std::size_t n) {
-  const auto of = static_cast<double>(n);
-  CHECK(static_cast<double>(coverage.held_68) / of >= 0.6 - 3 * deviation(0.6, n));
-  CHECK(static_cast<double>(coverage.held_68) / of <= 0.78 + 3 * deviation(0.78, n));
-  CHECK(static_cast<double>(coverage.held_95) / of >= 0.9 - 3 * deviation(0.9, n));
+  const auto total = static_cast<double>(n);
+  CHECK(static_cast<double>(coverage.held_68) / total >= 0.6 - 3 * deviation(0.6, n));
+  CHECK(static_cast<double>(coverage.held_68) / total <= 0.78 + 3 * deviation(0.78, n));
+  CHECK(static_cast<double>(coverage.held_95) / total >= 0.9 - 3 * deviation(0.9, n));
 }
 
 void check(const std::vector<Setting>& settings, std::size_t ensembles) {
@@ -141,9 +141,10 @@ void check(const std::vector<Setting>& settings, std::size_t ensembles) {
       const bool true_form = kind == Kind::normal || kind == Kind::gamma;
       fmt::print("{:>7} {:>3} {:>5} {:>5} |", names[static_cast<int>(kind)], setting.realizations,
                  setting.n_taps, setting.rho);
-      for (const Coverage* of : {&counts.fluctuations, &counts.histograms, &counts.variance}) {
+      for (const Coverage* coverage :
+           {&counts.fluctuations, &counts.histograms, &counts.variance}) {
         if (true_form)
-          fmt::print(" {:5.1f} {:5.1f} |", percent(of->held_68), percent(of->held_95));
+          fmt::print(" {:5.1f} {:5.1f} |", percent(coverage->held_68), percent(coverage->held_95));
         else
           fmt::print(" {:>11} |", "");
       }
@@ -220,7 +221,7 @@ TEST_CASE("States that do not vary or do not overlap are reported") {
   std::vector<SteadyVolumes> still(2);
   for (SteadyVolumes& state : still) state.add(std::vector{1.0, 1.0});
   CHECK_THROWS_AS(volume_bins(still), std::invalid_argument);
-  std::vector<SteadyVolumes> apart(2);
+  std::vector<SteadyVolumes> separated(2);
   const Setting setting{4, 100, 0};
   VolumeBins bins;
   for (int pass = 0; pass < 2; ++pass) {
@@ -229,18 +230,19 @@ TEST_CASE("States that do not vary or do not overlap are reported") {
         std::vector<double> series = memory(setting, 0, 1, 10 * i + r);
         for (double& x : series) x += 50 * static_cast<double>(i);
         if (pass == 0)
-          apart[i].add(series);
+          separated[i].add(series);
         else
-          apart[i].count(series, bins);
+          separated[i].count(series, bins);
       }
     }
-    if (pass == 0) bins = volume_bins(apart);
+    if (pass == 0) bins = volume_bins(separated);
   }
-  const auto steps = compactivity_steps(apart, bins);
+  const auto steps = compactivity_steps(separated, bins);
   CHECK_FALSE(steps[0].overlaps);
   CHECK(std::isnan(inverse_compactivity(steps, &CompactivityStep::histograms)[1].value));
   CHECK(inverse_compactivity(steps, &CompactivityStep::fluctuations)[1].value < -40);
-  CHECK(compactivity_verdict(steps, drift_together(apart)).statement.starts_with("cannot decide"));
+  CHECK(compactivity_verdict(steps, drift_together(separated))
+            .statement.starts_with("cannot decide"));
 }
 
 TEST_CASE("Close neighbours would agree whatever they are: no verdict") {
@@ -280,8 +282,8 @@ TEST_CASE("A drift that no state alone shows is seen in all together, and decide
         states[i].add(x);
       }
     }
-    const auto drifts = [](std::span<const SteadyVolumes> of) {
-      const Jackknifed drift = drift_together(of);
+    const auto drifts = [](std::span<const SteadyVolumes> neighbours) {
+      const Jackknifed drift = drift_together(neighbours);
       return p_value(drift.value, drift.error) < CompactivityVerdict::level;
     };
     found += drifts(states);
@@ -290,9 +292,9 @@ TEST_CASE("A drift that no state alone shows is seen in all together, and decide
   CAPTURE(alone, found);
   CHECK(found > 0.9 * ensembles);
   CHECK(alone < 0.4 * ensembles);
-  std::vector<SteadyVolumes> one(1);
-  one[0].add(std::vector{1.0, 2.0, 3.5});
-  CHECK_FALSE(drift_together(one).error.known());
+  std::vector<SteadyVolumes> states(1);
+  states[0].add(std::vector{1.0, 2.0, 3.5});
+  CHECK_FALSE(drift_together(states).error.known());
 }
 
 TEST_CASE("Both estimators follow their definitions, value by value") {

@@ -17,9 +17,9 @@ Study swept(const std::vector<Values>& points) {
     SweepPoint point;
     for (const auto& [pointer, text] : values)
       point.values.emplace_back(pointer, Json::parse(text));
-    StudyPoint& one = study.points.emplace_back();
-    one.sweep_values = values;
-    one.label = point_label(point);
+    StudyPoint& study_point = study.points.emplace_back();
+    study_point.sweep_values = values;
+    study_point.label = point_label(point);
   }
   return study;
 }

@@ -134,15 +134,16 @@ TEST_CASE("a thinned table keeps ends, extremes and order, and its values their 
   CHECK(values_of<std::string>(thin.quantities, "word").back() == "tap number 99");
   CHECK(values_of<double>(thin.quantities, "alone") == std::vector<double>{7});
   CHECK(std::ranges::none_of(thin.quantities,
-                             [](const Quantity& one) { return one.name == "damaged"; }));
+                             [](const Quantity& quantity) { return quantity.name == "damaged"; }));
   CHECK(thin.notes == whole.notes);
   CHECK(n_values(thin) < n_values(whole) / 50);
 }
 
 TEST_CASE("a table that is short stays as it is") {
   const Table whole = table_of(0, 5);
-  const Table same = thinned(whole, {.most_taps = n_taps, .most_places = n_places});
-  CHECK(values_of<double>(same.quantities, "phi") == values_of<double>(whole.quantities, "phi"));
-  CHECK(values_of<std::string>(same.quantities, "word") ==
+  const Table unchanged = thinned(whole, {.most_taps = n_taps, .most_places = n_places});
+  CHECK(values_of<double>(unchanged.quantities, "phi") ==
+        values_of<double>(whole.quantities, "phi"));
+  CHECK(values_of<std::string>(unchanged.quantities, "word") ==
         values_of<std::string>(whole.quantities, "word"));
 }

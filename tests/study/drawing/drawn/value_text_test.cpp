@@ -31,19 +31,20 @@ Json vectors() {
 TEST_CASE("numbers are shown as in the shared vectors") {
   const Json all = vectors();
   REQUIRE(all.at("numbers").size() > 20);
-  for (const Json& one : all.at("numbers").elements()) {
-    CAPTURE(one.dump());
-    CHECK(typeset_number(number_of(one.at(0)), static_cast<int>(one.at(1).number())) ==
-          one.at(2).text());
+  for (const Json& sample : all.at("numbers").elements()) {
+    CAPTURE(sample.dump());
+    CHECK(typeset_number(number_of(sample.at(0)), static_cast<int>(sample.at(1).number())) ==
+          sample.at(2).text());
   }
-  for (const Json& one : all.at("with_error").elements()) {
-    CAPTURE(one.dump());
-    CHECK(typeset_with_error(number_of(one.at(0)), number_of(one.at(1))) == one.at(2).text());
+  for (const Json& sample : all.at("with_error").elements()) {
+    CAPTURE(sample.dump());
+    CHECK(typeset_with_error(number_of(sample.at(0)), number_of(sample.at(1))) ==
+          sample.at(2).text());
   }
-  for (const Json& one : all.at("counts").elements()) {
-    CHECK(typeset_count(one.at(0).number()) == one.at(1).text());
+  for (const Json& sample : all.at("counts").elements()) {
+    CHECK(typeset_count(sample.at(0).number()) == sample.at(1).text());
   }
-  for (const Json& one : all.at("durations").elements()) {
-    CHECK(typeset_duration(one.at(0).number()) == one.at(1).text());
+  for (const Json& sample : all.at("durations").elements()) {
+    CHECK(typeset_duration(sample.at(0).number()) == sample.at(1).text());
   }
 }

@@ -116,7 +116,7 @@ Json data_of(const ResultsFile& file, std::size_t n_files = 1) {
 
 std::string said(const Json& data) {
   std::string text;
-  for (const Json& one : data.at("left_out").elements()) text += one.text() + "\n";
+  for (const Json& entry : data.at("left_out").elements()) text += entry.text() + "\n";
   return text;
 }
 

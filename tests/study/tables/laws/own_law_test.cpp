@@ -75,7 +75,7 @@ Curve measured(const Rewritten& law, std::size_t realizations) {
 }
 
 /// Ends in the same place, to `share` of the interval's length.
-bool same(const Interval& a, const Interval& b, double share) {
+bool is_same(const Interval& a, const Interval& b, double share) {
   const auto close = [&](double x, double y) {
     if (std::isinf(x) || std::isinf(y)) return x == y;
     return std::abs(x - y) <= share * (a.closed() ? a.upper - a.lower : std::abs(x));
@@ -155,7 +155,7 @@ TEST_CASE("An own law gives the parameters, intervals and words of the law that 
         for (int level : {0, 1}) {
           CAPTURE(level, x.intervals[level].lower, x.intervals[level].upper,
                   y.intervals[level].lower, y.intervals[level].upper);
-          CHECK(same(x.intervals[level], y.intervals[level], 1e-5));
+          CHECK(is_same(x.intervals[level], y.intervals[level], 1e-5));
         }
         CHECK(x.identifiability == y.identifiability);
       }
@@ -192,12 +192,12 @@ TEST_CASE("A law of the user's own is fitted from its start") {
   CHECK(std::abs(found.estimates[0].value - 0.58) < 4 * found.estimates[0].error);
   CHECK(std::abs(found.estimates[1].value - 0.01) < 4 * found.estimates[1].error);
   CHECK(std::abs(found.estimates[2].value - 10) < 4 * found.estimates[2].error);
-  for (const Estimate& one : found.estimates) CHECK(one.intervals[1].closed());
+  for (const Estimate& estimate : found.estimates) CHECK(estimate.intervals[1].closed());
   // Without the bound the minimum is the same one.
   OwnLaw unbounded = law;
   unbounded.bounds.clear();
-  const Fit again = std::get<Fit>(fit(*make_own_law(unbounded), curve));
-  CHECK(again.estimates[2].value == Approx(found.estimates[2].value).epsilon(1e-7));
+  const Fit repeated = std::get<Fit>(fit(*make_own_law(unbounded), curve));
+  CHECK(repeated.estimates[2].value == Approx(found.estimates[2].value).epsilon(1e-7));
 }
 
 TEST_CASE("A slope is wide where its interval holds 0") {
@@ -228,7 +228,7 @@ TEST_CASE("An own law that is not finite where it starts is refused with the t")
 }
 
 TEST_CASE("Threads evaluate one own law each for themselves") {
-  const auto one = make_own_law({.formula = "a + b*t", .start = {{"a", 1}, {"b", 1}}});
+  const auto law = make_own_law({.formula = "a + b*t", .start = {{"a", 1}, {"b", 1}}});
   const auto two = make_own_law({.formula = "a - b*t", .start = {{"a", 1}, {"b", 1}}});
   std::vector<int> wrong(4, 0);
   std::vector<std::thread> threads;
@@ -239,7 +239,7 @@ TEST_CASE("Threads evaluate one own law each for themselves") {
         // Each law several times in turn, so that parsers are kept and replaced.
         const bool rising = t / 50 % 2 == 0;
         const double expected = rising ? p[0] + 2 * t : p[0] - 2 * t;
-        if ((rising ? *one : *two).value(t, p) != expected) ++wrong[number];
+        if ((rising ? *law : *two).value(t, p) != expected) ++wrong[number];
       }
     });
   }
@@ -281,10 +281,10 @@ TEST_CASE("All faults of an own law are reported") {
     CAPTURE(bad.law.formula, said);
     CHECK(said.find(bad.says) != std::string::npos);
   }
-  const std::string both = fault({.formula = "foo(x)", .start = {}});
-  CHECK(both.find("foo") != std::string::npos);
-  CHECK(both.find("parameter x") != std::string::npos);
-  CHECK(both.find("no t") != std::string::npos);
+  const std::string message = fault({.formula = "foo(x)", .start = {}});
+  CHECK(message.find("foo") != std::string::npos);
+  CHECK(message.find("parameter x") != std::string::npos);
+  CHECK(message.find("no t") != std::string::npos);
   CHECK(fault({.formula = "a*t^2 + 1e-3*exp(-t/2.5E2)", .start = {{"a", 1}}}).empty());
 }
 

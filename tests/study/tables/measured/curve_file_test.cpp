@@ -158,13 +158,13 @@ TEST_CASE("a row without X is left out, and reported") {
 
 TEST_CASE("gaps of realizations: the others are used, or the row is dropped") {
   const std::string text = "t,a,b,c\n1,1,2,3\n2,2,,4\n3,3,4,5\n4,,,6\n5,NaN,6,7\n";
-  const MeasuredCurve others = curve_of(text, several);
-  CHECK(others.curve.t == std::vector<double>{1, 2, 3, 5});
+  const MeasuredCurve curve = curve_of(text, several);
+  CHECK(curve.curve.t == std::vector<double>{1, 2, 3, 5});
   for (std::size_t i = 0; i < 4; ++i) {  // X = t + offset, of which the mean is 1
-    CHECK(others.curve.x[i] == Approx(others.curve.t[i] + 1));
+    CHECK(curve.curve.x[i] == Approx(curve.curve.t[i] + 1));
   }
-  CHECK(others.curve.n_realizations == 3);
-  CHECK(others.notes.size() == 2);  // a row of one value; two values missing
+  CHECK(curve.curve.n_realizations == 3);
+  CHECK(curve.notes.size() == 2);  // a row of one value; two values missing
   const MeasuredCurve dropped =
       curve_of(text, {.columns = CurveColumns::realizations, .gaps = Gaps::drop_row});
   CHECK(dropped.curve.t == std::vector<double>{1, 3});

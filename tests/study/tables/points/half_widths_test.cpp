@@ -58,15 +58,15 @@ TEST_CASE("Means over realizations are printed with intervals that hold the trut
 TEST_CASE("Errors of a table become half widths where their degrees of freedom are known") {
   Table table{.name = "t"};
   table.axes = {{"tap", {"tap"}, std::vector<double>{0, 1}, "taps"}};
-  const std::vector<std::string> along = {"tap"};
-  table.quantities = {{"x", along, std::vector{1.0, 2.0}},
-                      {"x_error", along, std::vector{0.1, 0.1}},
-                      {"x_dof", along, std::vector{2.0, std::numeric_limits<double>::infinity()}},
-                      {"x_pooled_error", along, std::vector{0.2, 0.2}, "1",
-                       "standard error by the pooled variance"},
-                      {"x_pooled_dof", along, std::vector{2.0, 2.0}},
-                      {"y", along, std::vector{1.0, 2.0}},
-                      {"y_error", along, std::vector{0.1, 0.2}}};
+  const std::vector<std::string> axes = {"tap"};
+  table.quantities = {
+      {"x", axes, std::vector{1.0, 2.0}},
+      {"x_error", axes, std::vector{0.1, 0.1}},
+      {"x_dof", axes, std::vector{2.0, std::numeric_limits<double>::infinity()}},
+      {"x_pooled_error", axes, std::vector{0.2, 0.2}, "1", "standard error by the pooled variance"},
+      {"x_pooled_dof", axes, std::vector{2.0, 2.0}},
+      {"y", axes, std::vector{1.0, 2.0}},
+      {"y_error", axes, std::vector{0.1, 0.2}}};
   const Table shown = with_half_widths(table);
   REQUIRE(shown.quantities.size() == 5);
   CHECK(shown.quantities[1].name == "x_half_width");
