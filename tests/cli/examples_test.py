@@ -54,6 +54,7 @@ INSTEAD_IN_DOCS = {
     "jostle run my-scene.json": "jostle run small.json -o my-scene.h5",
     "jostle run mine.json": "jostle run small.json -o mine.h5",
     "jostle run bell.json": "jostle info bell.h5",
+    "jostle run loop.json": "jostle info loop.h5",
     "jostle run scene.json --retry-failed": "jostle run scene.json -o retried.h5 --retry-failed",
     "jostle check my-scene.json": "jostle check my-scene.json --no-pilot",
     "jostle cost scene.json": "jostle cost scene.json --replicates 2",
@@ -62,12 +63,15 @@ INSTEAD_IN_DOCS = {
     "jostle merge a.h5 b.h5 -o all.h5": "jostle merge low.h5 high.h5 -o all.h5 --force",
     "jostle slurm scene.json": "jostle slurm scene.json --hours 1 --cpus 1 --jobs 1",
     "jostle fit data.csv": "jostle fit measured.csv",
+    "jostle fit quickstart.h5 --observable bottom_fraction --csv measured.csv":
+        "jostle fit quickstart.h5 --observable bottom_fraction --csv measured.csv --force",
     "jostle fit data.csv --realizations": "jostle fit experiments.csv --realizations",
     "jostle fit file.csv --model pore_tail": "jostle fit volumes.csv --model pore_tail",
     "jostle analyse file.h5 hysteresis --observable bulk_fraction --last 1000":
         "jostle analyse fig4.h5 hysteresis --observable bulk_fraction",
 }
-RESULTS_OF_DOCS = {"volumes": "bell", "file": "fig5", "results": "quickstart", "run": "quickstart", "long": "fig5"}
+RESULTS_OF_DOCS = {"volumes": "bell", "file": "fig5", "results": "quickstart", "run": "quickstart", "long": "fig5",
+                   "loop": "fig4"}
 
 
 def documented(page):
