@@ -35,7 +35,7 @@ std::optional<Plan> first_point(const std::filesystem::path& file) {
   const ParsedScene parsed = parse_scene(text);
   if (!parsed.scene) return std::nullopt;
   try {
-    return make_plans(*parsed.scene, [](const PackingFile&) { return std::vector<Vec3>{}; }).at(0);
+    return make_plans(*parsed.scene, [](const PackingFile&) { return Packing{}; }).at(0);
   } catch (const StartError&) {
     return std::nullopt;
   }
