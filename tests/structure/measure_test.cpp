@@ -235,6 +235,19 @@ TEST_CASE("A sphere far above its bed is named, not filled with bins") {
   }
 }
 
+TEST_CASE("Rattlers count in a region without a backbone if the packing has one") {
+  const auto rattlers = [](const Packing& packing) {
+    StructureSettings settings;
+    settings.gaps.emplace();
+    settings.region = Region{39, 41, 0};
+    return part(measure(packing, settings, points), "gaps").find("rattlers")->value_at(0);
+  };
+  Packing bed = reference_deposit();
+  bed.centres.push_back({4, 4, 40});  // it touches nothing
+  CHECK(rattlers(bed) == 1);
+  CHECK(std::isnan(rattlers({bed.container, {{4, 4, 40}, {9, 9, 10}}})));
+}
+
 TEST_CASE("Only what has settings is measured") {
   StructureSettings settings;
   CHECK(measure(fcc(), settings, points).empty());
