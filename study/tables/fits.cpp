@@ -81,7 +81,7 @@ FitOutcome fit_model(const Model& model, const Curve& curve, const FitManner& ma
 }
 
 /// Units of the observable and of taps, as tables name them.
-const CurveUnits table_units = {"X", "t"};
+const CurveUnits units_of_tables = {"X", "t"};
 
 std::string lines(const std::vector<std::string>& texts) {
   std::string all;
@@ -99,7 +99,7 @@ struct EstimateColumns {
   explicit EstimateColumns(const std::vector<Estimate>& estimates) {
     for (const Estimate& estimate : estimates) {
       names.push_back(estimate.parameter.name);
-      units.push_back(unit_text(estimate.parameter.unit, table_units));
+      units.push_back(unit_text(estimate.parameter.unit, units_of_tables));
       statements.push_back(estimate.statement);
       found.push_back(name_of(estimate.identifiability));
       value.push_back(estimate.has_value() ? estimate.value : not_a_number);
@@ -294,6 +294,15 @@ FittedCurve fit_curve(const std::vector<std::unique_ptr<Model>>& models, FitSour
   }
   fitted.comparison = compare_laws(laws, fitted.source.curve);
   return fitted;
+}
+
+std::string units_of_parameter(const std::string& table_units, const CurveUnits& curve_units) {
+  for (const ParameterUnit unit :
+       {ParameterUnit::value, ParameterUnit::time, ParameterUnit::value_per_time,
+        ParameterUnit::value_time, ParameterUnit::per_time}) {
+    if (unit_text(unit, units_of_tables) == table_units) return unit_text(unit, curve_units);
+  }
+  return table_units;
 }
 
 std::vector<Table> fit_tables(const FittedCurve& fitted, const FitManner& manner) {

@@ -62,6 +62,10 @@ FittedCurve fit_curve(const std::vector<std::unique_ptr<Model>>& models, FitSour
 /// describes resampled errors.
 std::vector<Table> fit_tables(const FittedCurve& fitted, const FitManner& manner);
 
+/// Returns the units of a parameter as they are printed, for units as tables of fits name them:
+/// "d/taps" for "X/t" of a height against taps. Other units stay.
+std::string units_of_parameter(const std::string& table_units, const CurveUnits& curve_units);
+
 /// Called for every curve after its fits; may be empty.
 using FitObserver = std::function<void(const FittedCurve&)>;
 

@@ -18,6 +18,7 @@
 #include "ensemble/statistics/finite_text.hpp"
 #include "study/bad_input.hpp"
 #include "study/tables/analyse.hpp"
+#include "study/tables/fits.hpp"
 #include "study/tables/observable_series.hpp"
 #include "study/tables/points/over_points.hpp"
 #include "study/tables/points/point_scenes.hpp"
@@ -138,23 +139,12 @@ void set_values(std::span<Member> members, const std::string& observable,
   }
 }
 
-/// Units of a parameter of a fit, "X/t" in the table, for an observable with these units.
-std::string parameter_units(const std::string& units, const std::string& observable) {
-  const bool has_units = observable != "1";
-  if (units == "X") return observable;
-  if (units == "t") return "taps";
-  if (units == "1/t") return "1/taps";
-  if (units == "X/t") return observable + "/taps";
-  if (units == "X t") return has_units ? observable + " taps" : "taps";
-  return units;
-}
-
 void set(Member& member, DerivedValue&& derived) {
   const std::string observable = member.label.units;
   member.y = derived.value;
   member.y_error = derived.error;
   member.label = std::move(derived.label);
-  member.label.units = parameter_units(member.label.units, observable);
+  member.label.units = units_of_parameter(member.label.units, {observable, "taps"});
   member.no_value = std::move(derived.no_value);
   member.error_is_no_basis = derived.error_is_no_basis;
   member.taps = std::move(derived.taps);
