@@ -3,6 +3,7 @@
 
 mixtures.py. Errors are halves of 68 % intervals by Student's t over realizations."""
 import collections
+import functools
 import re
 
 import numpy as np
@@ -141,18 +142,16 @@ def rise_of(run, swept):
               f" | {tested} | {(gained[:, -1] > RISEN).sum()} of {len(gained)} |")
 
 
-def rise_long():
-    rise_of("mixtures-rise-long", ["diameter"])
-
-
-def rise_grains():
-    rise_of("mixtures-rise-grains", ["dilate_floor_held", "diameter"])
+RISES = {"mixtures-rise-long": ["diameter"], "mixtures-rise-density": ["density"],
+         "mixtures-rise-grains": ["friction", "diameter"], "mixtures-rise-grains-density": ["density"]}
 
 
 if __name__ == "__main__":
-    for run in (rise, rise_long, rise_grains, composition, polydisperse):
-        print(f"\n## {run.__name__}\n")
+    tables = {"mixtures-rise": rise, **{run: functools.partial(rise_of, run, swept) for run, swept in RISES.items()},
+              "mixtures-composition": composition, "mixtures-polydisperse": polydisperse}
+    for name, table in tables.items():
+        print(f"\n## {name}\n")
         try:
-            run()
+            table()
         except FileNotFoundError as missing:
             print(f"no reduced data: {missing.filename}")
