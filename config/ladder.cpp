@@ -291,6 +291,14 @@ class RelaxationLadder : LadderMaker {
   }
 };
 
+constexpr double layer_spacing = 0.8165;  // spacing of close-packed layers, sqrt(2/3) diameters
+
+/// Tests if a window of heights leaves room for a taper of this length above the floor.
+bool can_taper(const Window& window) {
+  const auto* heights = std::get_if<HeightWindow>(&window);
+  return heights == nullptr || heights->low >= 0.5 * layer_spacing;
+}
+
 }  // namespace
 
 std::vector<PilotSetting> ladder(const Scene& scene) {
@@ -305,18 +313,6 @@ MostComplete most_complete(const std::vector<PilotSetting>& settings) {
   }
   return found;
 }
-
-namespace {
-
-constexpr double layer_spacing = 0.8165;  // spacing of close-packed layers, sqrt(2/3) diameters
-
-/// Tests if a window of heights leaves room for it above the floor.
-bool can_taper(const Window& window) {
-  const auto* heights = std::get_if<HeightWindow>(&window);
-  return heights == nullptr || heights->low >= 0.5 * layer_spacing;
-}
-
-}  // namespace
 
 std::vector<OtherWindow> other_windows(const Scene& scene) {
   constexpr std::size_t longest_name = 64;

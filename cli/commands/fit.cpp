@@ -19,7 +19,6 @@
 #include "config/json/suggestion.hpp"
 #include "fitting/models/models.hpp"
 #include "study/available_cpus.hpp"
-#include "study/number_text.hpp"
 #include "study/provenance.hpp"
 #include "study/tables/fit_source.hpp"
 #include "study/tables/fits.hpp"
@@ -62,21 +61,6 @@ std::vector<std::unique_ptr<Model>> models_of_name(const std::string& name) {
   const std::vector<std::string> names = model_names();
   throw BadInput(fmt::format("--model {}: there is none; there are {}.{}", name,
                              joined(names, ", "), did_you_mean(name, names)));
-}
-
-using NamedNumber = std::pair<std::string, double>;
-
-std::vector<NamedNumber> named_numbers(const std::string& option,
-                                       const std::vector<std::string>& texts) {
-  std::vector<NamedNumber> all;
-  for (const std::string& text : texts) {
-    const auto equals = text.find('=');
-    const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
-    const auto number = read_number(value);
-    if (!number) throw BadInput(fmt::format("{} {}: not NAME=NUMBER", option, text));
-    all.emplace_back(text.substr(0, equals), *number);
-  }
-  return all;
 }
 
 std::map<std::string, double> fixed_parameters(const std::vector<std::string>& texts) {

@@ -32,4 +32,17 @@ FitRange read_range(const std::string& option, const std::string& text) {
   throw BadInput(fmt::format("{} {}: FIRST:LAST, and no number is so", option, text));
 }
 
+std::vector<NamedNumber> named_numbers(const std::string& option,
+                                       const std::vector<std::string>& texts) {
+  std::vector<NamedNumber> all;
+  for (const std::string& text : texts) {
+    const auto equals = text.find('=');
+    const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
+    const auto number = read_number(value);
+    if (!number) throw BadInput(fmt::format("{} {}: not NAME=NUMBER", option, text));
+    all.emplace_back(text.substr(0, equals), *number);
+  }
+  return all;
+}
+
 }  // namespace jostle::inline cli

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "study/tables/fit_source.hpp"
 
@@ -8,5 +10,11 @@ namespace jostle::inline cli {
 
 /// "1:4000", ":4000", "1:". Throws BadInput naming the option.
 FitRange read_range(const std::string& option, const std::string& text);
+
+using NamedNumber = std::pair<std::string, double>;
+
+/// Texts "NAME=NUMBER", in their order. Throws BadInput naming the option.
+std::vector<NamedNumber> named_numbers(const std::string& option,
+                                       const std::vector<std::string>& texts);
 
 }  // namespace jostle::inline cli

@@ -35,9 +35,8 @@ struct Member {
   ReachedTaps reached;
   double x = not_a_number;
   SweptValue swept;
-  std::string fixed_values;  // values of the sweep that do not vary with x
-  std::vector<double>
-      realizations;  // realizations with the value, by number; empty for other quantities
+  std::string fixed_values;          // values of the sweep that do not vary with x
+  std::vector<double> realizations;  // with the value, by number; empty for other quantities
   double y = not_a_number;
   ErrorOf y_error;
   Column label;
@@ -163,9 +162,8 @@ Streams streams_of(std::span<const Member> members) {
   if (n == members.size()) return Streams::independent;
   throw BadInput(fmt::format(
       "some of the {} points share starts and random numbers (one seed, matched streams), others "
-      "do "
-      "not: the points are neither paired nor independent. Analyse files of one seed together, and "
-      "those of another by themselves",
+      "do not: the points are neither paired nor independent. Analyse files of one seed together, "
+      "and those of another by themselves",
       members.size()));
 }
 
