@@ -27,7 +27,7 @@ FIGURES = {
                   "growth is slower for smaller eps: gain of 100 taps", WALLS),
     "pb3": Figure("PB 3: spectrum and sigma_Z of the mean height", ("pb3",), f"{PB}/fig3", "1024 (4096)",
                   "12 000", "4 / -",
-                  "the spectrum falls as f^-s, s from 1 to 1.5: at eps^(1/2) = 0.30", WALLS +
+                  "the spectrum falls as f^-s, s from 1 to 1.5: at eps^(1/2) = 0.15", WALLS +
                   " Strengths and taps are ours; the steady state is read as taps 1001 to 12 000."),
     "pb4": Figure("PB 4: bell and branches", ("pb4-bell", "pb4-hysteresis", "pb4-turns", "pb4-eta"),
                   f"{PB}/fig4-bell", "1024 (4096)", "4000; 1000 a step", "4 / 10",

@@ -91,11 +91,12 @@ def estimates_of(claim):
 
 
 def text_of(estimate):
-    """value(standard error in the last digits)."""
+    """value(half the 68 % interval in the last digits)."""
     if not estimate.testable:
         return f"{estimate.value:.4g}"
-    digits = max(0, 1 - int(np.floor(np.log10(estimate.error))))
-    return f"{estimate.value:.{digits}f}({round(estimate.error * 10**digits)})"
+    half = estimate.half_width()
+    digits = max(0, 1 - int(np.floor(np.log10(half))))
+    return f"{estimate.value:.{digits}f}({round(half * 10**digits)})"
 
 
 def positive(claim, estimates):

@@ -98,14 +98,16 @@ def without_links(text):
 HEAD = """# Validation: the published figures
 
 Each row compares a figure of PB (Philippe and Bideau, Phys. Rev. E 63, 051304, 2001) or DR (Rosato et al.,
-Phys. Rev. E 81, 061301, 2010) with runs of this program. a(b): b is the standard error in the last digits.
-`tests/physics/validation.py` makes these pages from [reduced data](../tests/physics/reduced) in seconds.
+Phys. Rev. E 81, 061301, 2010) with runs of this program. In a(b), b is half the 68 % interval by Student's t, in the
+last digits of a. `tests/physics/validation.py` makes these pages from [reduced data](../tests/physics/reduced) in
+seconds.
 """
 WORDS = """A statement is *reproduced* if its test at 5 % shows it, and *not reproduced* if the test rejects it.
 *Compatible*: a test that can only reject, with 80 % power for the stated difference, did not. *Qualitatively*: the sign
-of a change is found and the printed size is rejected, or single beds show the change. A figure is so called if at most
-half of its decided statements fail. *Underpowered*: the data decide nothing. Each row states its margin. Contrasts,
-margins and pooled variances that were chosen after a look at the data are marked post hoc.
+of a change is found and the printed size is rejected, or single beds show the change. A figure is called qualitative if
+some, at most half, of its decided statements fail. The table counts the statements of a figure that are shown
+(reproduced, compatible, qualitatively), that failed (not reproduced) and that are open. *Underpowered*: the data decide
+nothing. Each row states its margin and is marked where it is post hoc.
 """
 
 
@@ -121,16 +123,20 @@ def overview_page(scores):
         if not papers:
             continue
         key = next(s for s in papers if s.claim.text == figure.key)
-        known = [s for s in papers if s.status in DECIDED]
+        failed = sum(s.status == "not reproduced" for s in papers)
+        shown = sum(s.status in DECIDED for s in papers) - failed
+        standings = f"{shown} / {failed} / {len(papers) - shown - failed}"
         value = key.found if len(key.found) < 40 else key.found[:36].rsplit(" ", 1)[0] + " ..."
         thumbnail = f'<img src="validation/{name}.svg" width="120" alt="{figure.title}">'
         rows.append([f"[{figure.title}](validation/{name}.md)", thumbnail, f"**{status_of_figure(mine)}**",
-                     f"{len(known)} of {len(papers)}", f"{key.claim.text}: {value}", figure.size, figure.taps,
+                     standings, f"{key.claim.text}: {value}", figure.size, figure.taps,
                      figure.realizations])
     scoreboard = ", ".join(f"{found[word]} {word}" for word in STATUS)
+    post_hoc = sum(s.claim.post_hoc for s in scores if not s.claim.own)
     parts = [HEAD.strip(), wrapped(f"**{decided} of {total} statements are decided ({100 * decided / total:.0f} %)**: "
-                                   f"{scoreboard}."), "![Overview of all statements](validation/overview.svg)",
-             table(["figure", "drawn", "status", "decided", "key statement: found", "spheres (paper)", "taps (paper)",
+                                   f"{scoreboard}. {post_hoc} of the {total} were tested post hoc: their contrasts, "
+                                   "margins or pooled variances were chosen after a look at the data."), "![Overview of all statements](validation/overview.svg)",
+             table(["figure", "drawn", "status", "shown / failed / open", "statement: found", "spheres (paper)", "taps (paper)",
                     "M here / paper"], rows), WORDS.strip(),
              wrapped(f"{kept} of {tested} statements decided by a p-value remain with the false discovery rate "
                      "held at 5 % (Benjamini and Hochberg 1995); the expected share of false "

@@ -257,7 +257,7 @@ class Catalogue(Case):
 
     def test_files_are_the_same_on_every_day(self):
         figure = jostle.plot.figures(self.open(made(BED)))["mean-height"]
-        for name in ("one", "two"):
+        for name in ("one", "two.pdf"):
             jostle.plot.save(jostle.plot.draw(figure), self.folder / name)
         for kind in ("svg", "pdf"):
             self.assertEqual((self.folder / f"one.{kind}").read_bytes(), (self.folder / f"two.{kind}").read_bytes())

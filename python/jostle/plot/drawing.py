@@ -338,7 +338,11 @@ def _draw(panels: list[Description], width: float) -> Figure:
 
 
 def save(figure: Figure, path: Any, *, kinds: Sequence[str] = ("pdf", "svg")) -> None:
-    """Writes PATH.pdf and PATH.svg, the same bytes on every day; letters are text in both."""
+    """Writes PATH.pdf and PATH.svg, the same bytes on every day; letters are text in both. One of these suffixes at the
+    end of PATH is dropped."""
+    name = str(path)
+    for kind in kinds:
+        name = name.removesuffix(f".{kind}")
     with style():
         for kind in kinds:
-            figure.savefig(f"{path}.{kind}", metadata={"Creator": "jostle", "Date" if kind == "svg" else "CreationDate": None})
+            figure.savefig(f"{name}.{kind}", metadata={"Creator": "jostle", "Date" if kind == "svg" else "CreationDate": None})
