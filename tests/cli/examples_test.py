@@ -60,6 +60,8 @@ INSTEAD_IN_DOCS = {
     "jostle cost scene.json": "jostle cost scene.json --replicates 2",
     "jostle cost scene.json --target 0.001 --observable bottom_fraction --budget 2m":
         "jostle cost scene.json --target 0.001 --observable bottom_fraction --replicates 2 --force",
+    "jostle cost scene.json --target 0.001 --observable bottom_fraction":
+        "jostle cost scene.json --target 0.001 --observable bottom_fraction --replicates 2 --force",
     "jostle merge a.h5 b.h5 -o all.h5": "jostle merge low.h5 high.h5 -o all.h5 --force",
     "jostle slurm scene.json": "jostle slurm scene.json --hours 1 --cpus 1 --jobs 1",
     "jostle fit data.csv": "jostle fit measured.csv",
