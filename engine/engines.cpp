@@ -39,8 +39,15 @@ std::optional<std::string> engine_tap_fault(const EngineSettings& settings, cons
         },
         tap);
   }
+  std::string taps;
+  const std::vector<std::string_view> names = displacing_taps();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (k > 0) taps += k + 1 < names.size() ? ", " : " or ";
+    taps += names[k];
+  }
   return "the floor moves under discrete elements only: set \"engine\" to "
-         "{\"discrete_element\": {}}, or tap by dilate, dilate_floor_held, lift or shake";
+         "{\"discrete_element\": {}}, or tap by " +
+         taps;
 }
 
 std::optional<std::string> engine_start_fault(const EngineSettings& settings, const Start& start) {

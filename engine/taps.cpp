@@ -137,6 +137,20 @@ struct ControlOf {
   }
 };
 
+constexpr ControlSymbol symbols_of_controls[] = {
+    {"sqrt_epsilon", "√ε"}, {"epsilon", "ε"}, {"sqrt_delta", "√δ"}, {"gamma", "γ"},
+    {"lambda", "λ"},        {"Gamma", "Γ"},   {"amplitude", "A"}};
+
+/// Calls act.operator()<T>() for every tap.
+template <class Act, std::size_t... k>
+void for_each_tap(const Act& act, std::index_sequence<k...>) {
+  (act.template operator()<std::variant_alternative_t<k, Tap>>(), ...);
+}
+template <class Act>
+void for_each_tap(const Act& act) {
+  for_each_tap(act, std::make_index_sequence<std::variant_size_v<Tap>>());
+}
+
 }  // namespace
 
 double& strength(Tap& tap) {
@@ -145,6 +159,26 @@ double& strength(Tap& tap) {
 
 Control control(const Tap& tap) {
   return std::visit(ControlOf{}, tap);
+}
+
+std::span<const ControlSymbol> control_symbols() {
+  return symbols_of_controls;
+}
+
+std::string_view tap_symbol(std::string_view name) {
+  std::string_view symbol;
+  for_each_tap([&]<class T>() {
+    if (T::description.name == name) symbol = T::description.symbol;
+  });
+  return symbol;
+}
+
+std::vector<std::string_view> displacing_taps() {
+  std::vector<std::string_view> names;
+  for_each_tap([&]<class T>() {
+    if (!FloorTap<T>) names.push_back(T::description.name);
+  });
+  return names;
 }
 
 std::optional<std::string> tap_fault(const Tap& tap, const Container& container) {

@@ -3,8 +3,11 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <variant>
+#include <vector>
 
 #include "engine/bed/packing.hpp"
 #include "engine/bed/random.hpp"
@@ -21,7 +24,8 @@ struct Dilate {
   double epsilon = 0.02;
   bool operator==(const Dilate&) const = default;
 
-  static constexpr Description description{"dilate", "epsilon: z -> z (1 + epsilon)"};
+  static constexpr Description description{
+      .name = "dilate", .text = "epsilon: z -> z (1 + epsilon)", .symbol = "ε"};
   static constexpr auto fields() {
     return std::tuple{field("", &Dilate::epsilon, dilation_strength, "", {.examples = "[0.02]"})};
   }
@@ -35,8 +39,9 @@ struct DilateFloorHeld {
   bool operator==(const DilateFloorHeld&) const = default;
 
   static constexpr Description description{
-      "dilate_floor_held",
-      "Delta: (z - 1/2) -> (z - 1/2)(1 + Delta); spheres on the floor keep their height"};
+      .name = "dilate_floor_held",
+      .text = "Delta: (z - 1/2) -> (z - 1/2)(1 + Delta); spheres on the floor keep their height",
+      .symbol = "Δ"};
   static constexpr auto fields() {
     return std::tuple{
         field("", &DilateFloorHeld::delta, dilation_strength, "", {.examples = "[0.025]"})};
@@ -48,7 +53,8 @@ struct Lift {
   double gamma = 0.25;
   bool operator==(const Lift&) const = default;
 
-  static constexpr Description description{"lift", "gamma: z -> z + gamma, diameters"};
+  static constexpr Description description{
+      .name = "lift", .text = "gamma: z -> z + gamma, diameters", .symbol = "γ"};
   static constexpr auto fields() {
     return std::tuple{field("", &Lift::gamma, Strength{closed_range(0, 100), "diameters"}, "",
                             {.examples = "[0.25]"})};
@@ -160,6 +166,17 @@ struct Control {
   double value = 0;
 };
 Control control(const Tap& tap);
+
+/// The name of a control parameter and its symbol on axes.
+struct ControlSymbol {
+  std::string_view name, symbol;
+};
+/// Those of all control parameters: figures find the swept one in a table by its name here.
+std::span<const ControlSymbol> control_symbols();
+/// The symbol in print of the strength of the tap of that name; empty where it has none.
+std::string_view tap_symbol(std::string_view name);
+/// The names of the taps that displace spheres, which every engine follows.
+std::vector<std::string_view> displacing_taps();
 
 /// Why a bed in the container cannot be tapped so; nothing if it can. Without gravity a tap only
 /// relaxes: a dilation or a lift of strength zero.

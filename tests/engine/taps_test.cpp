@@ -4,6 +4,10 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+#include <vector>
 
 #include "engine/starts/starts.hpp"
 #include "sample_packings.hpp"
@@ -28,6 +32,22 @@ TEST_CASE("taps displace heights as published") {
   CHECK(excited(packing, DilateFloorHeld{0.025}).centres[1].z == Approx(10.75));
   CHECK(excited(packing, Lift{0.25}).centres[0].z == 0.75);
   CHECK(excited(packing, Lift{0.25}).centres[1].z == 10.75);
+}
+
+TEST_CASE("figures know the control parameter of every tap by its name") {
+  const auto is_known = [](const Tap& tap) {
+    return std::ranges::count(control_symbols(), control(tap).name, &ControlSymbol::name) == 1;
+  };
+  [&]<class... Taps>(std::type_identity<std::variant<Taps...>>) {
+    const bool all_known = (is_known(Taps{}) && ...);
+    CHECK(all_known);
+  }(std::type_identity<Tap>{});
+  CHECK(is_known(HalfSine{.kind = FloorStrength::acceleration}));
+
+  CHECK(tap_symbol("lift") == "γ");
+  CHECK(tap_symbol("shake").empty());
+  CHECK(displacing_taps() ==
+        std::vector<std::string_view>{"dilate", "dilate_floor_held", "lift", "shake"});
 }
 
 TEST_CASE("a dilation of 1.025 about the floor spheres lifts a 0.567 bed like gamma = 0.25") {

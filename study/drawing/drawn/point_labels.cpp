@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "config/sweep.hpp"
+#include "engine/taps.hpp"
 #include "study/drawing/drawn/value_text.hpp"
 
 namespace jostle::inline study {
@@ -14,16 +15,12 @@ namespace {
 
 using SweptValues = std::vector<std::pair<std::string, Json>>;
 
-/// Names of scenes in print; others are written in words.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 6> printed_names{
-    {{"dilate", "ε"},
-     {"dilate_floor_held", "Δ"},
-     {"lift", "γ"},
-     {"theta0", "θ_0"},
-     {"monte_carlo", "Monte Carlo"},
-     {"discrete_element", "grains"}}};
+/// Names of scenes in print, beside those of taps; others are written in words.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> printed_names{
+    {{"theta0", "θ_0"}, {"monte_carlo", "Monte Carlo"}, {"discrete_element", "grains"}}};
 
 std::string printed(std::string name) {
+  if (const std::string_view symbol = tap_symbol(name); !symbol.empty()) return std::string(symbol);
   const auto* const known = std::ranges::find(
       printed_names, std::string_view(name), &std::pair<std::string_view, std::string_view>::first);
   if (known != printed_names.end()) return std::string(known->second);

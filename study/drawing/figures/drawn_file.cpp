@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/taps.hpp"
 #include "structure/observables.hpp"
 #include "study/drawing/drawn/point_labels.hpp"
 #include "study/drawing/drawn/thinning.hpp"
@@ -173,34 +174,28 @@ std::string axis_label(const std::string& name, const std::string& units) {
 
 namespace {
 
-struct ControlName {
-  const char *name, *symbol;
-};
-constexpr ControlName controls[] = {{"sqrt_epsilon", "√ε"}, {"epsilon", "ε"}, {"sqrt_delta", "√δ"},
-                                    {"gamma", "γ"},         {"lambda", "λ"},  {"Gamma", "Γ"},
-                                    {"amplitude", "A"}};
-
-const char* symbol_of_control(const std::string& name) {
-  const auto* const found = std::ranges::find(controls, name, &ControlName::name);
-  return found == std::end(controls) ? nullptr : found->symbol;
+std::string_view symbol_of_control(const std::string& name) {
+  for (const ControlSymbol& control : control_symbols())
+    if (control.name == name) return control.symbol;
+  return {};
 }
 
 }  // namespace
 
 std::string control_symbol(const std::string& name) {
-  const char* const symbol = symbol_of_control(name);
-  return symbol == nullptr ? words(name) : symbol;
+  const std::string_view symbol = symbol_of_control(name);
+  return symbol.empty() ? words(name) : std::string(symbol);
 }
 
 std::string control_label(const std::string& name, const std::string& units) {
-  const char* const symbol = symbol_of_control(name);
-  return (symbol == nullptr ? words(name) : std::string("strength of the taps ") + symbol) +
+  const std::string_view symbol = symbol_of_control(name);
+  return (symbol.empty() ? words(name) : fmt::format("strength of the taps {}", symbol)) +
          unit_text(units);
 }
 
 std::string control_of(const TableView& table) {
-  for (const ControlName& control : controls) {
-    if (table.has(control.name)) return control.name;
+  for (const ControlSymbol& control : control_symbols()) {
+    if (table.has(std::string(control.name))) return std::string(control.name);
   }
   return "";
 }
