@@ -47,8 +47,9 @@ class LadderMaker {
     const bool fills = std::holds_alternative<SteepestDescentPour>(scene_.start) ||
                        std::holds_alternative<FittedPour>(scene_.start) ||
                        std::holds_alternative<RandomSettle>(scene_.start);
-    const Boundary boundary(scene_.container);
-    if (!fills || boundary.tube || !boundary.has_floor() || scene_.n_spheres < 2) return;
+    if (!fills || has_one_width(scene_.container) || !has_gravity(scene_.container) ||
+        scene_.n_spheres < 2)
+      return;
     Vec3 half = extent(scene_.container);
     half.x *= 0.5;
     if (half.x < narrowest_half) return;

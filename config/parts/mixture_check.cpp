@@ -87,14 +87,9 @@ std::optional<std::string> place_fault(const MixtureKind& kind, const Container&
   const Boundary boundary(container);
   const double radius = 0.5 * range_of(kind.diameter).greatest;
   const auto [x, y] = *kind.place;
-  const auto outside = [&](bool planes, double coordinate, double width) {
-    return planes ? coordinate < radius || coordinate > width - radius : coordinate > width;
-  };
-  const double dx = x - boundary.axis(), dy = y - boundary.axis(), reach = boundary.axis() - radius;
-  const bool is_out = boundary.tube ? dx * dx + dy * dy > reach * reach
-                                    : outside(boundary.planes_x(), x, boundary.width_x) ||
-                                          outside(boundary.planes_y(), y, boundary.width_y);
-  if (!is_out) return std::nullopt;
+  const bool is_in =
+      x <= boundary.width_x && y <= boundary.width_y && in_footprint(boundary, {x, y, 0}, radius);
+  if (is_in) return std::nullopt;
   return finite_text(
       "a sphere of {:.6g} diameters above ({}, {}) does not lie within the container: move it "
       "inwards",

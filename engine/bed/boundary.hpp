@@ -76,9 +76,9 @@ class Faces {
   const Face& operator[](std::size_t k) const { return faces_[k]; }
 
  private:
-  void add(const Face& face) { faces_[size_++] = face; }
+  void add(const Face& face) { faces_.at(size_++) = face; }
 
-  std::array<Face, 5> faces_{};
+  std::array<Face, most_faces> faces_{};
   std::size_t size_ = 0;
 };
 

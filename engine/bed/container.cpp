@@ -104,6 +104,12 @@ double footprint_area(const Container& container) {
   return footprint_area(Boundary(container), 0);
 }
 
+bool has_one_width(const Container& container) {
+  const Vec3 size = extent(container);
+  const Container longer = *container_of(name_of(container), {size.x, 2 * size.y, size.z});
+  return width_y(longer) == size.y;
+}
+
 bool has_gravity(const Container& container) {
   return Boundary(container).has_floor();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -36,6 +37,8 @@ inline constexpr double least_periodic_width = 2;
 inline constexpr double least_walled_width = 1;
 /// Widths, heights and diameters of a container, at most: diameters.
 inline constexpr double widest_container = 10'000;
+/// Faces of a container, at most: the floor and the sides.
+inline constexpr std::size_t most_faces = 5;
 /// Spheres of a packing, at most.
 inline constexpr std::uint32_t most_spheres = 10'000'000;
 
@@ -169,6 +172,9 @@ double footprint_area(const Container& container);
 Vec3 extent(const Container& container);
 double width_x(const Container& container);
 double width_y(const Container& container);
+
+/// True if one width gives both sides of the footprint: of a tube.
+bool has_one_width(const Container& container);
 
 /// True if there is a floor to fall on: in every container but the fully periodic one.
 bool has_gravity(const Container& container);

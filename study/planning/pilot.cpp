@@ -60,7 +60,7 @@ Container with_cut_footprint(const Plan& plan, double share) {
   const double least = narrowest_cut(plan);
   const double left_x = cut_width(size.x, factor, units.x, least) / size.x;
   const double left_y = cut_width(size.y, factor, units.y, least) / size.y;
-  if (boundary.tube) {
+  if (has_one_width(plan.container)) {
     size.x = cut_width(size.x, factor, 0, least);
   } else {
     size.x = cut_width(size.x, share / left_y, units.x, least);

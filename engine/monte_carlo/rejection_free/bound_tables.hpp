@@ -227,6 +227,7 @@ class BoundTables {
   }
 
   void add_plane(Planes& planes, Vec3 normal, double gap) const {
+    static_assert(Planes::most >= most_faces);
     if (gap > bins_.longest) return;
     const std::uint32_t w = planes.n++;
     planes.x[w] = static_cast<float>(normal.x);

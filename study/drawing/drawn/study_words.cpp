@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "engine/bed/boundary.hpp"
+#include "engine/bed/container.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 
@@ -18,7 +18,7 @@ std::string words(const Container& container) {
   std::string title =
       std::visit([](const auto& box) { return std::string(box.description.title); }, container);
   title.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(title.front())));
-  if (Boundary(container).tube) return finite_text("{}, {} diameters wide", title, size.x);
+  if (has_one_width(container)) return finite_text("{}, {} diameters wide", title, size.x);
   if (size.z > 0) return finite_text("{}, {} x {} x {} diameters", title, size.x, size.y, size.z);
   return finite_text("{}, {} x {} diameters", title, size.x, size.y);
 }

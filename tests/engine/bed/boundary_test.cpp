@@ -46,6 +46,11 @@ TEST_CASE("A boundary knows the ends of each container") {
   CHECK(tube.axis() == 3.5);
   CHECK(tube.width_y == 7);
 
+  CHECK(has_one_width(Cylinder{7}));
+  CHECK_FALSE(has_one_width(WalledBox{7, 7}));
+  CHECK_FALSE(has_one_width(PeriodicBox{7, 7}));
+  CHECK_FALSE(has_one_width(FullyPeriodicBox{7, 7, 7}));
+
   const Boundary plates(Plates{5, 4});
   CHECK(plates.periodic_x);
   CHECK(plates.planes_y());
