@@ -293,7 +293,7 @@ Fit Fitter::finish() {
       if (attempt < most_attempts) continue;
       void_intervals(fit);
     }
-    if (!is_minimum(fit.reason)) {
+    if (!is_minimum(fit.reason) && fit.reason != EndReason::budget) {
       fit.remarks.push_back(std::string("The fit did not settle: ") + describe(fit.reason) + ".");
     }
     if (fit.dof == 0) {
@@ -310,15 +310,14 @@ Fit Fitter::finish() {
   }
 }
 
-// Where intervals were not finished they are open.
+// The only remark on the limit of evaluations.
 void remark_on_budget(Fit& fit) {
   std::ostringstream text;
-  text << "The fit stopped after " << fit.total_evaluations
-       << " evaluations of the law over the curve, as many as allowed for " << fit.n_points
+  text << "The fit stopped at its limit of evaluations (" << fit.total_evaluations
+       << " evaluations of the law over the curve, for " << fit.n_points
        << (fit.n_bins > 0 ? " points in " + std::to_string(fit.n_bins) + " bins" : " points")
-       << " and " << fit.n_free << (fit.n_free == 1 ? " parameter: " : " parameters: ")
-       << (is_minimum(fit.reason) ? "intervals that were not finished by then are open"
-                                  : "no minimum was reached")
+       << " and " << fit.n_free << (fit.n_free == 1 ? " parameter): " : " parameters): ")
+       << (is_minimum(fit.reason) ? "unfinished intervals are open" : "no minimum was reached")
        << ". Fix parameters, or choose a law of fewer.";
   fit.remarks.push_back(text.str());
 }

@@ -126,7 +126,7 @@ std::string basis_of_errors(const Fit& fit) {
   text << fit.n_points << " points";
   if (fit.n_bins > 0) text << " fitted as " << fit.n_bins << " means over at most 1 % of t";
   if (fit.n_realizations == 0 && fit.memory.time > 0 && !std::isfinite(largest_error(fit))) {
-    text << "; no errors, as the residuals remember for too long";
+    text << "; no errors, because the residuals are correlated for too long";
     return text.str();
   }
   text << "; errors at 68 %, from ";
@@ -195,10 +195,9 @@ std::vector<const Fit*> distinct(const std::vector<Fit>& fits) {
   return found;
 }
 
-// How a law compares with the leading one: "two_exponentials (difference 0.021(6), p = 0.0013)".
+// How a law compares with the leading one: "two_exponentials (p = 0.0013)".
 std::string compared_text(const HeldOutLaw& law) {
-  if (law.same_curve) return law.model + " (same curve)";
-  return law.model + " (difference " + difference_text(law) + ", " + p_text(law.p) + ")";
+  return law.model + " (" + (law.same_curve ? "same curve" : p_text(law.p)) + ")";
 }
 
 std::string listed(const std::vector<std::string>& texts) {
@@ -239,8 +238,8 @@ std::vector<ParameterTable> parameter_tables(const Fit& fit) {
   std::vector<ParameterTable> tables;
   if (fit.limit) {
     tables.push_back({"fitted as its limit, X = " + fit.limit->formula, fit.limit->estimates});
-    tables.push_back({"and all of " + fit.model +
-                          " that fits as well, which may leave the limit after the last t",
+    tables.push_back({"full law: " + fit.model +
+                          " fits equally well, and may differ from its limit after the last t",
                       fit.estimates});
   } else {
     tables.push_back({"", shown_estimates(fit)});
@@ -327,9 +326,11 @@ std::string choice_text(const LawComparison& comparison) {
   const std::string& leading = comparison.laws[comparison.leading].model;
   const std::string worse_laws = listed(worse);
   if (open.empty()) return leading + " predicts held-out realizations better than " + worse_laws;
-  std::string text = "undecided: " + listed(open) + (open.size() > 1 ? " do" : " does") +
-                     " not predict held-out realizations measurably worse than " + leading;
-  if (!worse.empty()) text += "; " + worse_laws + (worse.size() > 1 ? " do" : " does");
+  open.insert(open.begin(), leading);
+  std::string text = "undecided: " + listed(open) +
+                     " predict held-out realizations equally well, within the errors";
+  if (!worse.empty())
+    text += "; " + worse_laws + (worse.size() > 1 ? " predict" : " predicts") + " worse";
   return text;
 }
 

@@ -172,6 +172,12 @@ FitSource measured_source(const FitArguments& arguments) {
   source.notes = std::move(measured.notes);
   source.units = measured.units;
   source.title = arguments.input;
+  if (!arguments.realizations && !arguments.independent) {
+    source.notes.emplace_back(
+        source.curve.sigma.empty()
+            ? "One curve: its errors do not contain the scatter between experiments."
+            : "One curve: its errors contain the scatter between experiments only if sigma does.");
+  }
   if (arguments.realizations) {
     source.title += fmt::format(", {} realizations", source.curve.n_realizations);
   }

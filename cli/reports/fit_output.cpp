@@ -9,6 +9,7 @@
 #include "cli/tables/text_table.hpp"
 #include "cli/tables/wrapped.hpp"
 #include "fitting/report.hpp"
+#include "fitting/summary.hpp"
 #include "fitting/value_text.hpp"
 
 namespace jostle::inline cli {
@@ -17,8 +18,35 @@ namespace {
 
 constexpr const char* verdict_legend =
     "\na(b): b, in the last digits of a, is half the 68 % interval; a(+b/-c): its two sides; -: "
-    "that interval is open; not identifiable: the data set no limit. docs/reference/laws.md "
-    "describes all terms.\n";
+    "that interval is open; not identifiable: the data set no limit.\n"
+    "wide: the 95 % interval is longer than an eighth of the curve's range (a level or a place), "
+    "has ends that differ by more than a factor 2 (another positive parameter), or contains 0 (a "
+    "slope); identified: the interval has two ends and is not wide.\n";
+
+/// The conventions of the tables, and placeholders of units that the file does not give.
+std::string legend(const CurveUnits& units) {
+  std::string text = verdict_legend;
+  if (units.x.empty() && units.t.empty()) {
+    text += "[X], [t]: the units of the values and of t, which the file does not give.\n";
+  } else if (units.x.empty() || units.t.empty()) {
+    text += fmt::format("{}, which the file does not give.\n",
+                        units.x.empty() ? "[X]: the unit of the values" : "[t]: the unit of t");
+  }
+  return text + "docs/reference/laws.md describes all terms.\n";
+}
+
+/// "  verdict    ...", at most four lines: the law, its asymptote, a warning.
+std::string summary_lines(const std::vector<Fit>& fits, const FittedCurve& fitted) {
+  const FitsSummary found = summary(fits, fitted.comparison, fitted.source.units);
+  std::string text;
+  const auto line = [&](const char* name, const std::string& value) {
+    if (!value.empty()) text += fmt::format("  {:<9}  {}\n", name, value);
+  };
+  line("verdict", found.choice);
+  line("asymptote", found.asymptote);
+  line("warning", found.warning);
+  return text;
+}
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json();
@@ -201,8 +229,10 @@ std::string fits_text(const FittedCurve& fitted, const Layout& layout) {
     if (const auto* found = std::get_if<Fit>(&outcome.result)) fits.push_back(*found);
   }
   std::string text = fitted.source.title + "\n";
-  for (const std::string& note : fitted.source.notes) text += fmt::format("  note     {}\n", note);
-  if (!fits.empty()) text += fmt::format("  verdict  {}\n", verdict(fits, fitted.comparison));
+  if (!fits.empty()) text += summary_lines(fits, fitted);
+  for (const std::string& note : fitted.source.notes) {
+    text += fmt::format("  note       {}\n", note);
+  }
   const ReportDetail detail =
       layout.columns == Columns::all ? ReportDetail::full : ReportDetail::brief;
   for (const FitOutcome& outcome : fitted.outcomes) {
@@ -210,7 +240,7 @@ std::string fits_text(const FittedCurve& fitted, const Layout& layout) {
     text += fit_text(outcome, detail, fitted.source.units);
   }
   if (fits.size() > 1) text.append("\n").append(compare(fits, fitted.comparison));
-  if (!fits.empty()) text += verdict_legend;
+  if (!fits.empty()) text += legend(fitted.source.units);
   text += '\n';
   return wrapped(text, layout.width);
 }

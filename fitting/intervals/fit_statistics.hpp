@@ -27,6 +27,9 @@ void count_effective_points(Fit& fit);
 /// parameters that can compensate each other, on few points that dominate, on chi2 far from 1 and
 /// on correlated residuals.
 void judge(const Curve& curve, Fit& fit);
+
+/// True if the residuals change sign significantly less often than independent residuals would.
+bool has_correlated_residuals(const Fit& fit);
 /// Opens the intervals of examined estimates at which a singular search ended by rounding alone.
 void open_absurd_intervals(const Curve& curve, const Fit& fit, std::vector<Estimate>& estimates);
 /// Takes the errors of examined estimates from their 68 % intervals, infinite where these are open:

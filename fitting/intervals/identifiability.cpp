@@ -130,18 +130,23 @@ void remark_on_loose(Fit& fit) {
   fit.remarks.push_back(text.str());
 }
 
-void remark_on_memory(Fit& fit) {
+void remark_on_memory(const Curve& curve, Fit& fit) {
   if (!(fit.memory.time > 0)) return;
   std::ostringstream text;
   text.precision(3);
-  text << "One curve alone: its residuals remember for about " << fit.memory.time
-       << " in t, so its " << fit.n_points << " points are worth " << fit.effective_size
-       << " independent ones";
-  if (too_short_for_errors(fit)) {
-    text << ", too few for errors and intervals, and none are given. Fit several realizations, or, "
-            "where every point is an experiment of its own, fit without memory.";
+  text << "One curve: its residuals are correlated over ";
+  if (fit.memory.time > span(curve.t)) {
+    text << "the whole curve";
   } else {
-    text << "; errors and intervals count that.";
+    text << "about " << fit.memory.time << " in t";
+  }
+  text << ". Its " << fit.n_points << " points count as " << fit.effective_size
+       << " independent points";
+  if (too_short_for_errors(fit)) {
+    text << ", too few for errors and intervals. Fit several realizations; if every point is an "
+            "experiment of its own, fit without memory.";
+  } else {
+    text << "; errors and intervals include this.";
   }
   fit.remarks.push_back(text.str());
 }
@@ -176,8 +181,7 @@ void remark_on_chi2(Fit& fit) {
             "exact; by the scatter around the law they are "
          << fit.scatter_ratio << " times longer.";
   } else if (fit.n_realizations > 0) {
-    text << "realizations keep to values of their own, so their mean scatters less than they do. "
-            "Errors and intervals count that.";
+    text << "each realization has a level of its own; errors and intervals include this.";
   } else {
     text << "the errors given are larger than the scatter of the points.";
   }
@@ -185,7 +189,7 @@ void remark_on_chi2(Fit& fit) {
 }
 
 void remark_on_residuals(Fit& fit) {
-  if (fit.reason == EndReason::exact || !(fit.runs.z < 0 && fit.runs.p < runs_level)) return;
+  if (!has_correlated_residuals(fit)) return;
   std::ostringstream text;
   text.precision(3);
   text << "The residuals are correlated (" << fit.runs.runs << " runs of one sign, "
@@ -259,11 +263,15 @@ void judge_estimates(const Curve& curve, std::vector<Estimate>& estimates) {
   }
 }
 
+bool has_correlated_residuals(const Fit& fit) {
+  return fit.reason != EndReason::exact && fit.runs.z < 0 && fit.runs.p < runs_level;
+}
+
 void judge(const Curve& curve, Fit& fit) {
   open_absurd_intervals(curve, fit, fit.estimates);
   take_errors_of_intervals(fit, fit.estimates);
   judge_estimates(curve, fit.estimates);
-  remark_on_memory(fit);
+  remark_on_memory(curve, fit);
   remark_on_loose(fit);
   remark_on_weights(fit);
   remark_on_chi2(fit);

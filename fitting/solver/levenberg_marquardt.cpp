@@ -235,9 +235,9 @@ const char* describe(EndReason reason) {
     case EndReason::no_progress:
       return "no progress: no step lowers the cost";
     case EndReason::iteration_limit:
-      return "limit: as many iterations as allowed";
+      return "limit of iterations reached";
     case EndReason::budget:
-      return "limit: as many evaluations as allowed";
+      return "limit of evaluations reached";
     case EndReason::not_finite:
       return "not finite: the model has no value at the start";
   }

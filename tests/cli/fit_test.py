@@ -103,7 +103,8 @@ class Measured(WithCurve):
                 self.assertTrue(laws["kww"]["worse"] and laws["kww"]["p"] < 0.05)
                 self.assertIn("verdict inverse_log predicts held-out realizations better than", text)
             else:
-                self.assertIn("verdict undecided: ", text)
+                self.assertRegex(text, "verdict undecided: .* predict held-out realizations equally well, within the")
+                self.assertRegex(text, r"asymptote .*\(95 %, over (all laws|the laws that are not rejected)\)")
 
     def test_a_range_and_a_fixed_parameter_are_kept(self):
         self.write(self.table(), "data.csv")
@@ -153,7 +154,7 @@ class Measured(WithCurve):
         lines = ["t,X"] + [f"{t},{x + 1e-3 * math.cos(t / 900)}" for t, x in self.rows]
         self.write("\n".join(lines) + "\n", "data.csv")
         told = self.jostle("fit", "data.csv", "--model", "kww", environment=UNFOLDED).stdout
-        self.assertIn("no errors, as the residuals remember for too long", told)
+        self.assertIn("no errors, because the residuals are correlated for too long", told)
         self.assertNotIn("Student's t of", told)
         self.assertIn("--independent gives errors", told)
         self.assertNotIn("--independent", self.jostle("fit", "data.csv", "--model", "kww", "--independent").stdout)
@@ -202,7 +203,12 @@ class Files(Case):
         self.assertEqual(self.parameters("v_sigma_first.csv"), named)
         index = self.curve("v_index.csv")
         self.assertFalse(index["fits"][0]["sigma_given"])
-        self.assertEqual(index["notes"], ["Column 1 (no name) is an index and is not used."])
+        self.assertEqual(index["notes"],
+                         ["Column 1 (no name) is an index and is not used.",
+                          "One curve: its errors do not contain the scatter between experiments."])
+        self.assertEqual(self.curve("v_named.csv")["notes"],
+                         ["One curve: its errors contain the scatter between experiments only if sigma does."])
+        self.assertEqual(self.curve("v_index.csv", "--independent")["notes"], index["notes"][:1])
         self.assertLess(abs(index["fits"][0]["parameters"]["X_inf"]["value"] - 0.6322), 0.002)
         real = self.curve("real_index.csv", "--realizations")
         self.assertEqual(real["fits"][0]["realizations"], 4)
@@ -214,7 +220,7 @@ class Files(Case):
         self.jostle("fit", "real.csv", "--realizations", "--csv", "mean.csv")
         mean = self.curve("mean.csv")
         self.assertEqual(mean["fits"][0]["points"], 200)
-        self.assertEqual(len(mean["notes"]), 3)  # a column per law
+        self.assertEqual(len(mean["notes"]), 4)  # a column per law, one curve
 
     def test_line_ends_and_dividers_change_nothing(self):
         text = (self.folder / "real.csv").read_text()
@@ -248,7 +254,7 @@ class Files(Case):
             self.assertLess(found["resampled_error"] / found["error"], 2)
         self.assertLessEqual(others["fits"][0]["error_dof"], 3)
         text = self.jostle("fit", "gaps.csv", "--realizations").stdout
-        self.assertIn("note     20 of 800 values are missing", text)
+        self.assertIn("note       20 of 800 values are missing", text)
 
     def test_independent_rows_have_no_memory(self):
         rows, state = [], 0.0
