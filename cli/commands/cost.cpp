@@ -93,6 +93,7 @@ int run_cost(const CostArguments& arguments) {
     const StopRequest stop;
     RunDisplay display(arguments.no_progress ? ProgressStyle::none : ProgressStyle::plain, "",
                        threads, false);
+    if (arguments.replicates == 0) display.begin_budget(arguments.budget);
     CostRun run(pilot, {arguments.budget, arguments.replicates},
                 settings_of(arguments, output, threads, stop), display);
     if (!run.run()) {

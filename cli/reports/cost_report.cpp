@@ -159,28 +159,36 @@ std::string other_windows_line(const CostOfObservable& cost) {
   return text.empty() ? "" : text + ".\n";
 }
 
+std::string meaning_of_half(const CostStudy& study) {
+  const bool is_there = std::ranges::any_of(study.settings(), [](const PilotSetting& setting) {
+    return setting.part == PilotSetting::Part::spheres;
+  });
+  return is_there ? "half the footprint: half the spheres on half the area of the floor.\n" : "";
+}
+
 std::string advice(const CostStudy& study, const CostOfObservable& cost, double target) {
   const std::string wanted = finite_text("For an error of {:g} in {}", target, cost.label.name);
   const auto choice = cheapest(cost.limits, target);
   if (choice) {
     const SettingCost& limit = cost.limits[choice->setting];
     return finite_text(
-        "{}: {}, {}, about {} for {} taps; by a bias of at most {:.2g} and a spread of at most "
-        "{:.2g} after tap {}, either of which these {} replicates let pass once in five times, if "
-        "relaxations beyond the ladder change {}.\n",
+        "{}: {}, {}, about {} for {} taps.\nUpper limits at 80 % confidence ({}): bias {:.2g}, "
+        "spread of realizations {:.2g} after tap {}. They assume that every stop rule stricter "
+        "than \"{}\" changes the result {}.\n",
         wanted, study.settings()[choice->setting].name,
         counted(choice->realizations, "realization"), core_time(choice->core_seconds), study.taps(),
-        limit.bias, limit.sigma, study.pilot_taps(), limit.pairs,
-        is_seen(cost.last_step) ? "less and less, as its last two steps do"
-                                : "half as much a step as its last step, or less");
+        counted(limit.pairs, "pilot replicate"), limit.bias, limit.sigma, study.pilot_taps(),
+        study.settings()[study.reference().last].name,
+        is_seen(cost.last_step) ? "less than the rule before it, as for the last two rules"
+                                : "at most half as much as the rule before it");
   }
   double least = std::numeric_limits<double>::infinity();
   for (const SettingCost& setting : cost.limits) least = std::fmin(least, setting.bias);
   if (std::isinf(least)) {
     return wanted +
-           ": nothing can be recommended. Steps of the ladder are not known to shrink, so that the "
-           "bias of the most complete setting has no limit. Use more replicates, or a scene whose "
-           "own stop is more complete.\n";
+           ": nothing can be recommended. Stricter stop rules are not known to change the result "
+           "less and less, so the bias of the most complete setting has no limit. Use more "
+           "replicates, or a scene whose own stop is more complete.\n";
   }
   return finite_text(
       "{} no setting suffices: the least limit of a bias, that of the most complete setting "
@@ -207,14 +215,14 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
       scene_realizations, scene_realizations == 1 ? "" : "s",
       core_time(own.realization_seconds * scene_realizations), study.taps());
   head += fmt::format(
-      "\n{}: after {} tap{}, {} replicates, against {}; a(b): b is half the 68 % "
+      "\n{}: pilots after {} tap{}, {} replicates, against {}; a(b): b is half the 68 % "
       "interval\n",
       cost.label.name, study.pilot_taps(), study.pilot_taps() == 1 ? "" : "s", study.replicates(),
       study.settings()[study.reference().last].name);
   const std::string footer =
       "front: no other setting has both a smaller |bias| + error and a smaller time.\n" +
-      shortfall_of_the_reference(cost) + doubt_of_the_reference(study) + failures(study) +
-      growth_of_the_bias(study, cost) + other_windows_line(cost);
+      meaning_of_half(study) + shortfall_of_the_reference(cost) + doubt_of_the_reference(study) +
+      failures(study) + growth_of_the_bias(study, cost) + other_windows_line(cost);
   return wrapped(head, layout.width) + rows(study, cost, layout) + wrapped(footer, layout.width);
 }
 

@@ -19,7 +19,7 @@ void RunDisplay::computing(const Progress& progress, const WorkAhead& ahead, std
                          counted(all, "realization"),
                          counted(static_cast<std::uint64_t>(threads_), "thread")));
   }
-  computing_.emplace(progress, ahead, style_);
+  computing_.emplace(progress, ahead, style_, budget_);
 }
 
 void RunDisplay::computed() {

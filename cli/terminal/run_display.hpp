@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,11 @@ class RunDisplay : public RunObserver {
   RunDisplay(ProgressStyle style, std::string file, int threads, bool prints_targets)
       : style_(style), file_(std::move(file)), threads_(threads), prints_targets_(prints_targets) {}
 
+  /// The realizations are pilots, whose budget of wall-clock time begins here.
+  void begin_budget(std::chrono::duration<double> whole) {
+    budget_ = {std::chrono::steady_clock::now(), whole};
+  }
+
   void computing(const Progress& progress, const WorkAhead& ahead, std::uint64_t pending,
                  std::uint64_t all) override;
   void computed() override;
@@ -27,6 +33,7 @@ class RunDisplay : public RunObserver {
   std::string file_;
   int threads_;
   bool prints_targets_;
+  std::optional<PilotBudget> budget_;
   std::optional<ProgressDisplay> computing_;
   std::optional<StoringDisplay> storing_;
 };

@@ -35,6 +35,7 @@ class Cost(Case):
         done = self.cost("--replicates", "3", "--taps", "5", "--target", "0.5", "--csv", "c.csv")
         self.assertIn("against eta = 1e-06", done.stdout)
         self.assertRegex(done.stdout, "For an error of 0.5 in bottom_fraction: .+, 2 real")
+        self.assertRegex(done.stdout, r"Upper limits at 80 % confidence \(3 pilot replicates\): bias \S+, spread of real")
         with h5py.File(self.folder / "tiny-cost.h5") as stored:
             table = stored["analysis/cost/bottom_fraction"]
             names = [name.decode() for name in table["setting"][:]]
@@ -103,11 +104,11 @@ class Cost(Case):
         self.assertEqual(self.digest("tiny-cost.h5"), self.digest("b.h5"))
         other = self.cost("--replicates", "4", "--taps", "4", "-o", "b.h5", "--resume", "--observable",
                           "mean_height")
-        self.assertIn("mean_height: after 4 taps, 4 replicates", other.stdout)
+        self.assertIn("mean_height: pilots after 4 taps, 4 replicates", other.stdout)
 
     def test_a_budget_decides_whole_replicates(self):
         done = self.cost("--budget", "0s", "--taps", "2")
-        self.assertIn("after 2 taps, 2 replicates", done.stdout)
+        self.assertIn("pilots after 2 taps, 2 replicates", done.stdout)
         done = self.cost("--budget", "1s", "--taps", "2", "--resume")
         self.assertNotIn(" 2 replicates", done.stdout)
 
