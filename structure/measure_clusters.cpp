@@ -58,9 +58,9 @@ Measurement measure_part(MeasuredPacking& measured, const ClustersSettings& sett
        .places = "cells",
        .values = relative,
        .long_name =
-           "variance of the volume of a cluster over its cells and over shared_cells, over that of "
-           "the single cells it is of: 1 where cells are independent, no value where they do not "
-           "vary, or of fewer than 10 clusters",
+           "variance of the volume of a cluster, divided by its number of cells, by shared_cells "
+           "and by the variance of its single cells: 1 where cells are independent, no value where "
+           "they do not vary, or of fewer than 10 clusters",
        .beyond = not_a_number},
       {.name = "shared_cells",
        .places = "cells",
@@ -72,8 +72,8 @@ Measurement measure_part(MeasuredPacking& measured, const ClustersSettings& sett
        .places = "cells",
        .values = chi,
        .units = "sphere volumes",
-       .long_name = "compactivity (mean - least) / k of cells and clusters, k by moments: variance "
-                    "over mean less least",
+       .long_name = "compactivity (mean - least) / k of cells and clusters: their variance divided "
+                    "by mean less least",
        .source = "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309",
        .beyond = not_a_number,
        .with_change = true,

@@ -200,21 +200,22 @@ Measurement measure_part(MeasuredPacking& measured, const PoresSettings& setting
   const auto number = static_cast<double>(found.size());
   Measurement measurement;
   measurement.places = {{"xi", sizes.xi, "R", "radius of a pore, middle of a bin"}};
-  measurement.quantities = {{.name = "rho_xi",
-                             .places = "xi",
-                             .values = sizes.rho_xi,
-                             .long_name = "pores a unit of xi; their number is its integral",
-                             .source = "Philippe & Bideau 2001, sec. V"},
-                            {.name = "rho_v",
-                             .places = "xi",
-                             .values = sizes.rho_v,
-                             .long_name = "pores a unit of v = xi^3",
-                             .source = "Philippe & Bideau 2001, fig. 10"},
-                            {.name = "v_rho_v",
-                             .places = "xi",
-                             .values = sizes.v_rho_v,
-                             .long_name = "pores a unit of ln v",
-                             .source = "Philippe & Bideau 2001, fig. 10"}};
+  measurement.quantities = {
+      {.name = "rho_xi",
+       .places = "xi",
+       .values = sizes.rho_xi,
+       .long_name = "number of pores per unit of xi; its integral is their number",
+       .source = "Philippe & Bideau 2001, sec. V"},
+      {.name = "rho_v",
+       .places = "xi",
+       .values = sizes.rho_v,
+       .long_name = "number of pores per unit of v = xi^3",
+       .source = "Philippe & Bideau 2001, fig. 10"},
+      {.name = "v_rho_v",
+       .places = "xi",
+       .values = sizes.v_rho_v,
+       .long_name = "number of pores per unit of ln v",
+       .source = "Philippe & Bideau 2001, fig. 10"}};
   add_single("n_pores", number, "pores of the region", measurement,
              "Philippe & Bideau 2001, sec. V");
   measurement.quantities.back().is_compared = false;

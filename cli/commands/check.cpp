@@ -56,8 +56,9 @@ void print_size(const LoadedScene& loaded, const Study& study) {
         "  at first: realizations are added until the target precision is reached, at most {}\n",
         loaded.scene.until.at_most));
   }
-  print_wrapped(fmt::format("  disk: at most {}, parts and results together\n",
-                            format_bytes(static_cast<double>(disk_estimate(study, Shard{})))));
+  print_wrapped(
+      fmt::format("  disk: at most {}, for the results file and the files of the run together\n",
+                  format_bytes(static_cast<double>(disk_estimate(study, Shard{})))));
 }
 
 void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
@@ -74,7 +75,7 @@ void print_pilot_line(const Plan& plan, const PilotEstimate& estimate) {
                                 : finite_text("{} {:.0f} {} per tap, ", qualifier,
                                               estimate.rounds_per_tap, round_name(plan.engine));
   print_wrapped(fmt::format(
-      "  {}{}{}, {} {} at {} {}/s: {}{} {} per realization\n", plan.label,
+      "  {}{}pilot of {}: {} {} at {} {}/s; the scene: {}{} {} per realization\n", plan.label,
       plan.label.empty() ? "" : ": ", pilot, format_count(static_cast<double>(estimate.units)),
       unit_name(plan.engine), format_count(estimate.units_per_second), unit_name(plan.engine),
       a_tap, qualifier, format_duration(estimate.realization)));
@@ -95,6 +96,12 @@ void print_grains(const LoadedScene& loaded) {
   if (!text.empty()) print_wrapped("discrete elements\n" + text);
 }
 
+/// "18 s of core time", "3.2 core-hours".
+std::string core_time(Seconds seconds) {
+  return seconds < Seconds(60) ? format_duration(seconds) + " of core time"
+                               : finite_text("{:.3g} core-hours", seconds.count() / 3600);
+}
+
 void print_pilot(const LoadedScene& loaded, int cpus) {
   print("cost, extrapolated from the first taps of a pilot\n");
   const ScenePilot pilot(loaded, print_pilot_line);
@@ -102,10 +109,10 @@ void print_pilot(const LoadedScene& loaded, int cpus) {
   const std::size_t threads = std::min(static_cast<std::size_t>(cpus), realizations);
   const std::size_t turns = (realizations + threads - 1) / threads;
   const Seconds mean = pilot.mean_realization();
-  print_wrapped(finite_text(
-      "  time: {} {} on {}, {:.3g} core-hours\n", pilot.settled() ? "about" : "at least",
-      format_duration(mean * static_cast<double>(turns)), counted(threads, "thread"),
-      mean.count() * static_cast<double>(realizations) / 3600));
+  print_wrapped(finite_text("  time: {} {} on {}, {}\n", pilot.settled() ? "about" : "at least",
+                            format_duration(mean * static_cast<double>(turns)),
+                            counted(threads, "thread"),
+                            core_time(mean * static_cast<double>(realizations))));
   print_wrapped(fmt::format("  memory: about {}\n", format_bytes(pilot.bytes(threads))));
 }
 

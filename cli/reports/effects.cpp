@@ -2,13 +2,35 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
 namespace jostle::inline cli {
 namespace {
 
 constexpr std::size_t longest_list = 40, first_of_long = 10;  // elements
 
+/// " m", " kg/m^3": units of the settings of discrete elements; lengths elsewhere are in diameters.
+std::string unit_of(std::string_view key) {
+  using Unit = std::pair<std::string_view, const char*>;
+  constexpr std::array<Unit, 7> units{{{"diameter", " m"},
+                                       {"density", " kg/m^3"},
+                                       {"gravity", " m/s^2"},
+                                       {"stiffness", " N/m"},
+                                       {"kinetic_energy", " m g d"},
+                                       {"seconds", " s"},
+                                       {"most_seconds", " s"}}};
+  const auto found = std::ranges::find(units, key, &Unit::first);
+  return found == units.end() ? "" : found->second;
+}
+
+/// Units that numbers are printed with.
+enum class Units { none, discrete_elements };
+
 /// A value of a scene in words: {"polar": {"max_step": 0.1}} as "polar (max_step 0.1)".
-std::string in_words(const Json& value) {
+std::string in_words(const Json& value, Units units = Units::none) {
   if (value.is_string()) return value.text();
   if (!value.is_structured()) return value.dump();
   std::string words;
@@ -16,19 +38,21 @@ std::string in_words(const Json& value) {
     const auto& elements = value.elements();
     const bool is_long = elements.size() > longest_list;
     for (std::size_t i = 0; i < (is_long ? first_of_long : elements.size()); ++i) {
-      words += fmt::format("{}{}", words.empty() ? "" : "; ", in_words(elements[i]));
+      words += fmt::format("{}{}", words.empty() ? "" : "; ", in_words(elements[i], units));
     }
     if (is_long) {
-      words += fmt::format("; ...; {} ({} values)", in_words(elements.back()), elements.size());
+      words +=
+          fmt::format("; ...; {} ({} values)", in_words(elements.back(), units), elements.size());
     }
     return words;
   }
   for (const auto& [key, member] : value.members()) {
     if (!words.empty()) words += ", ";
     if (!member.is_object()) {
-      words += fmt::format("{} {}", key, in_words(member));
+      const bool has_unit = units == Units::discrete_elements && member.is_number();
+      words += fmt::format("{} {}{}", key, in_words(member, units), has_unit ? unit_of(key) : "");
     } else {
-      words += member.empty() ? key : fmt::format("{} ({})", key, in_words(member));
+      words += member.empty() ? key : fmt::format("{} ({})", key, in_words(member, units));
     }
   }
   return words;
@@ -89,7 +113,9 @@ std::string effects_text(const Json& scene) {
         std::string_view(part) == "engine" || std::string_view(part) == "relax";
     if (is_of_engine && value.empty()) continue;
     if (is_on(part, value)) {
-      enabled += fmt::format("  {:<11}{}\n", part, in_words(value));
+      const bool is_engine = std::string_view(part) == "engine";
+      enabled += fmt::format("  {:<11}{}\n", part,
+                             in_words(value, is_engine ? Units::discrete_elements : Units::none));
     } else {
       disabled += fmt::format("{}{}", disabled.empty() ? "" : ", ", part);
     }

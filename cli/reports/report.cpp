@@ -165,31 +165,84 @@ PointCost cost_of(const ResultsFile& file, std::span<const RealizationSummary> r
   return cost;
 }
 
-std::string point_report(const ResultsFile& file, std::uint32_t point,
+/// The report of a sweep point in parts: points that agree have one sentence.
+struct PointReport {
+  std::string table, sentence, rest;
+};
+
+PointReport point_report(const ResultsFile& file, std::uint32_t point,
                          std::span<const RealizationSummary> realizations, const Layout& layout) {
   const StudyPoint& study = file.study().points[point];
   const PointSeries series = point_series(file, point, realizations);
-  std::string text = study.label.empty() ? "" : wrapped(study.label + "\n", layout.width);
-  std::string sentences_below;
+  PointReport report;
+  report.table = study.label.empty() ? "" : wrapped(study.label + "\n", layout.width);
+  std::string rest;
   if (!series.reached.empty()) {
-    text += tap_table(series, layout);
-    sentences_below = sentences(series) + growth_line(series) + fitting_line(file, point);
+    report.table += tap_table(series, layout);
+    report.sentence = wrapped(sentences(series), layout.width);
+    rest = growth_line(series) + fitting_line(file, point);
   }
-  sentences_below +=
-      cost_line(cost_of(file, realizations), study.unit) + failures_of(study, realizations);
-  return text + wrapped(sentences_below, layout.width);
+  rest += cost_line(cost_of(file, realizations), study.unit) + failures_of(study, realizations);
+  report.rest = wrapped(rest, layout.width);
+  return report;
 }
 
-/// "bottom_fraction 0.5413(20) at tap 0, 0.5591(13) at tap 100".
-std::string change_of(const PointSeries& series) {
-  if (series.reached.empty()) return "";
+/// Reports one after another, with the sentence once where it is the same for all.
+std::string text_of(std::span<const PointReport> reports, const Layout& layout) {
+  const bool agree = reports.size() > 1 && std::ranges::all_of(reports, [&](const auto& report) {
+                       return report.sentence == reports.front().sentence;
+                     });
+  std::string text;
+  for (const PointReport& report : reports) {
+    if (&report != reports.data()) text += '\n';
+    text += report.table + (agree ? "" : report.sentence) + report.rest;
+  }
+  if (!agree || reports.front().sentence.empty()) return text;
+  return text + wrapped("\nat every sweep point: " + reports.front().sentence, layout.width);
+}
+
+/// The first packing fraction, else the first column; null without columns.
+const EnsembleSeries* described_column(const PointSeries& series) {
   const auto named = [](const EnsembleSeries& ensemble_series) {
     return ensemble_series.label.shown == Shown::spread &&
            ensemble_series.label.name.ends_with("fraction");
   };
   auto shown = std::ranges::find_if(series.columns, named);
   if (shown == series.columns.end()) shown = series.columns.begin();
-  if (shown == series.columns.end()) return "";
+  return shown == series.columns.end() ? nullptr : &*shown;
+}
+
+/// "; bottom_fraction after tap 100: 0.586(2) at epsilon = 0.01, 0.594(2) at epsilon = 0.02" of a
+/// few sweep points that reached one last tap.
+std::string comparison_of(const ResultsFile& file,
+                          std::span<const RealizationSummary> realizations) {
+  constexpr std::size_t most_compared = 8;
+  const std::vector<StudyPoint>& points = file.study().points;
+  if (points.size() > most_compared) return "";
+  const std::size_t a_point = file.study().realizations;
+  std::string name, text;
+  std::size_t last = 0;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const PointSeries series = point_series(file, static_cast<std::uint32_t>(p),
+                                            realizations.subspan(p * a_point, a_point));
+    const EnsembleSeries* column = series.reached.empty() ? nullptr : described_column(series);
+    if (column == nullptr || points[p].label.empty()) return "";
+    if (p == 0) {
+      name = column->label.name;
+      last = series.reached.size() - 1;
+    }
+    if (column->label.name != name || series.reached.size() != last + 1) return "";
+    text +=
+        fmt::format("{}{} at {}", p == 0 ? "" : ", ", mean_text(*column, last), points[p].label);
+  }
+  return fmt::format("; {} after tap {}: {}", name, last, text);
+}
+
+/// "bottom_fraction 0.5413(20) at tap 0, 0.5591(13) at tap 100".
+std::string change_of(const PointSeries& series) {
+  if (series.reached.empty()) return "";
+  const EnsembleSeries* const shown = described_column(series);
+  if (shown == nullptr) return "";
   const std::size_t last = series.reached.size() - 1;
   const bool as_many = shown->count[0] == shown->count[last];
   const auto mean_at = [&](std::size_t tap) {
@@ -209,7 +262,8 @@ std::string verdict_line(const ResultsFile& file,
   if (cost.failed > 0) text += fmt::format(", {} FAILED", cost.failed);
   if (cost.unfinished > 0) text += fmt::format(", {} unfinished", cost.unfinished);
   if (cost.missing > 0) text += fmt::format(", {} missing", cost.missing);
-  if (n_points == 1) text += change_of(point_series(file, 0, realizations));
+  text += n_points == 1 ? change_of(point_series(file, 0, realizations))
+                        : comparison_of(file, realizations);
   return text + "\n\n";
 }
 
@@ -264,12 +318,12 @@ std::string report(const ResultsFile& file, const Layout& layout) {
                                 : ""),
                 layout.width);
   }
+  std::vector<PointReport> reports;
   for (const std::size_t point : shown) {
-    if (point > 0) text += '\n';
-    text += point_report(file, static_cast<std::uint32_t>(point),
-                         std::span(all).subspan(point * a_point, a_point), layout);
+    reports.push_back(point_report(file, static_cast<std::uint32_t>(point),
+                                   std::span(all).subspan(point * a_point, a_point), layout));
   }
-  return text + wrapped(legend(layout), layout.width);
+  return text + text_of(reports, layout) + wrapped(legend(layout), layout.width);
 }
 
 }  // namespace jostle::inline cli

@@ -85,11 +85,11 @@ Goodness goodness(const Histogram& histogram, const std::vector<double>& expecte
   return {fisher_tail(between_groups / dof / scatter, dof, dof_within), n};
 }
 
-std::string verdict(const Goodness& found, std::uint32_t realizations) {
-  if (std::isnan(found.p)) return "fitted; too few counts to test the law";
+std::string verdict(const std::string& law, const Goodness& found, std::uint32_t realizations) {
+  if (std::isnan(found.p)) return law + " fitted; too few counts to test the law";
   const std::string test = finite_text("{} test over {} bins, {}", realizations > 1 ? "F" : "chi2",
                                        found.bins, p_text(found.p));
-  return (found.p < doubted ? "the law does not hold: " : "the law is not refuted: ") + test;
+  return law + (found.p < doubted ? " does not hold: " : " is not rejected: ") + test;
 }
 
 // The mean over realizations, all or all but one.
@@ -137,7 +137,7 @@ HistogramFit fit_histogram(const Model& law, const Histogram& histogram) {
   found.values = std::move(best.values);
   const Goodness good = goodness(histogram, best.expected, n);
   found.p = good.p;
-  found.status = verdict(good, m);
+  found.status = verdict("the law " + law.name(), good, m);
   if (m >= 2) add_errors(law, histogram, found);
   return found;
 }

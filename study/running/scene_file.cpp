@@ -9,6 +9,7 @@
 #include <span>
 
 #include "config/json/json_text.hpp"
+#include "config/shipped_scenes.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "results/disk/error.hpp"
 #include "results/disk/input_file.hpp"
@@ -20,11 +21,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The command for the shipped scene of this name, where the file does not exist.
+std::string shipped_hint(const std::string& path) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored)) return "";
+  const std::string wanted = fs::path(path).replace_extension().generic_string();
+  const auto is_wanted = [&](const ShippedScene& scene) {
+    const std::string name = fmt::format("/{}", scene.name);
+    return fmt::format("/{}", wanted).ends_with(name) || name.ends_with(fmt::format("/{}", wanted));
+  };
+  const auto scene = std::ranges::find_if(shipped_scenes(), is_wanted);
+  if (scene == shipped_scenes().end()) return "";
+  return fmt::format(". jostle carries a scene of this name, \"{}\": jostle new can write it",
+                     scene->name);
+}
+
 std::string read_text(const std::string& path) {
   try {
     return read_text_file(path, Pipes::allowed);
   } catch (const ResultsError& error) {
-    throw BadInput(fmt::format("cannot read the scene: {}", error.what()));
+    throw BadInput(fmt::format("cannot read the scene: {}{}", error.what(), shipped_hint(path)));
   }
 }
 

@@ -129,9 +129,26 @@ std::string region_note(std::string_view part, const StructureSettings& settings
   const std::string heights =
       settings.region
           ? finite_text("heights {:g} to {:g}", settings.region->low, settings.region->high)
-          : "of each packing: heights 1 to 10 but at most 2<Z> - 1";
-  return part == "profile" ? "phi_region " + heights + ", from side to side"
-                           : heights + ", 1 from walls; all of a fully periodic box";
+          : "heights from 1 d to 10 d, but at most 2<Z> - 1 d, in each packing";
+  return part == "profile" ? "phi_region: " + heights + ", from side to side"
+                           : heights + ", at least 1 d from walls; all of a fully periodic box";
+}
+
+bool is_in_radii(std::string_view units) {
+  return units == "R" || units == "1/R";
+}
+
+/// Terms of a table that its numbers are printed with.
+void add_terms(Table& table) {
+  const bool in_radii = std::ranges::any_of(
+      table.quantities, [](const Quantity& quantity) { return is_in_radii(quantity.units); });
+  if (!in_radii) return;
+  table.notes.emplace_back("R", "radius of a sphere of diameter d = 1");
+  if (!table.name.ends_with("profile")) return;
+  table.notes.emplace_back(
+      "slopes",
+      "alpha: of a straight line through the smoothed profile; eq7_alpha: of eq. 7 of Philippe & "
+      "Bideau 2001, fitted to the profile with its free surface");
 }
 
 /// The tables, each with what it was measured with.
@@ -143,6 +160,7 @@ std::vector<Table> tables_of(const std::string& prefix, const EnsembleStructure&
     const Json* part = written.find(table.name.substr(prefix.size()));
     table.notes.emplace_back("settings", part->dump());
     table.notes.emplace_back("region", region_note(table.name.substr(prefix.size()), settings));
+    add_terms(table);
   }
   return tables;
 }

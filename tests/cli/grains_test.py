@@ -265,7 +265,7 @@ class Grains(Case):
         self.write(changed(GRAINS, engine={"discrete_element": {}}))
         text = self.jostle("check", "scene.json", environment=UNFOLDED).stdout
         for part in ("contact time 0.000473 s", "Gamma 1.998", "floor speed 0.416 m/s",
-                     "sphere steps at", "time steps per tap"):
+                     "sphere steps at", "time steps per tap", "diameter 0.02 m, density 1200 kg/m^3"):
             self.assertIn(part, text)
 
     def test_check_speaks_of_every_point_and_of_what_will_fail(self):

@@ -284,6 +284,7 @@ class Data(Report):
         lines = dict(self.run_data["summary"]["blocks"][0]["rows"])
         self.assertEqual(list(lines), ["run", "end", "law", "steady?", "ageing?"])
         self.assertIn("48 spheres", lines["run"])
+        self.assertNotIn("FILE", " ".join(lines.values()))
         self.assertIn("ε = 0.02 to ε = 0.1", lines["run"])
         end = lines["end"].replace("\u00a0", " ")
         self.assertRegex(end, r"^(bulk|bottom) fraction Φ_?\S* after 60 taps: 0\.\d+\(\d+\) at ε = 0\.02, ")

@@ -50,7 +50,7 @@ class Statements(Case):
         for extremum in ("maximum", "minimum"):
             self.assertTrue(sweep[f"{name}: {extremum}"].endswith(sweep[f"{name}: steady"]))
         few = self.notes("analyse", "tiny.h5", "sweep", "--observable", "mean_height", "--last", "5")
-        self.assertIn("not shown to be steady: the averaged taps at sqrt_epsilon = 0.03162 (dilate = 0.001), "
+        self.assertIn("the averaged taps are not shown to be steady at sqrt_epsilon = 0.03162 (dilate = 0.001), "
                       "0.04472 (dilate = 0.002), 0.06325 (dilate = 0.004)", few[f"{name}: steady"])
 
     def test_packings_whose_spheres_do_not_touch_have_no_rattlers(self):

@@ -207,17 +207,19 @@ class Structure(Case):
         self.write(changed(TINY, container={"sides": "walls", "width": 4.5}))
         self.run_scene()
         parts = {"profile": {}, "sides": {}, "layers": {}, "pair_correlation": {}, "coordination": {}}
-        bulk = "heights 1 to 10 but at most 2<Z> - 1"
-        given = {"profile": "phi_region heights 0.5 to 2, from side to side",
+        bulk = "heights from 1 d to 10 d, but at most 2<Z> - 1 d, in each packing"
+        given = {"profile": "phi_region: heights 0.5 to 2, from side to side",
                  "sides": "of each packing: heights 2 to 0.8 of 2<Z>",
                  "layers": "all heights, from side to side", "coordination": '{"heights":[0.5,2],"from_sides":0}'}
-        default = {**given, "profile": f"phi_region of each packing: {bulk}, from side to side",
-                   "coordination": f"of each packing: {bulk}, 1 from walls; all of a fully periodic box"}
+        default = {**given, "profile": f"phi_region: {bulk}, from side to side",
+                   "coordination": f"{bulk}, at least 1 d from walls; all of a fully periodic box"}
         for region, expected in (({"heights": [0.5, 2], "from_sides": 0}, given), (None, default)):
             settings = {**parts, **({"region": region} if region else {})}
             found = self.tables("tiny.h5", "--settings", json.dumps(settings), "--sweep-point", 0, "--tap", 4,
                                 "--no-store")
             notes = {name.split("/")[1]: table["notes"]["region"] for name, table in found.items()}
+            self.assertEqual(next(table["notes"]["R"] for name, table in found.items() if name.endswith("profile")),
+                             "radius of a sphere of diameter d = 1")
             pairs = notes.pop("pair_correlation")
             self.assertIn("central spheres from side to side, at heights at least r_max above 1/2", pairs)
             self.assertNotIn("from walls", pairs)

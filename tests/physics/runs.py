@@ -123,7 +123,7 @@ class Run:
         if not self.seconds:
             told = subprocess.run([self.jostle, "check", ROOT / scene], check=True, text=True,
                                   stdout=subprocess.PIPE).stdout
-            return " ".join(re.search(r"time: (about|at least).*? ([0-9.]+ core-hours)", told,
+            return " ".join(re.search(r"time: (about|at least).*? ([0-9.e-]+ core-hours|[0-9.]+ m?s of core time)", told,
                                       re.S).groups())
 
         def work(path):

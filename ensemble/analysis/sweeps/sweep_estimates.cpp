@@ -119,7 +119,7 @@ std::string verdict_of(const SweepCurve& curve, const SweepExtremum& found,
   if (std::isnan(found.p)) {
     return fmt::format("cannot decide: there are no errors to test a {} by", words.extremum);
   }
-  const std::string test = p_text(found.p) + ", two lines";
+  const std::string test = p_text(found.p) + ", two-lines test";
   if (found.found()) {
     const bool open = std::isnan(found.x_low) || std::isnan(found.x_high);
     return fmt::format("found inside the sweep: the curve {} to it and {} behind it ({}){}",
@@ -137,7 +137,7 @@ std::string verdict_of(const SweepCurve& curve, const SweepExtremum& found,
   const std::string reason =
       std::isnan(found.x)
           ? fmt::format("the points about the {} value do not bend {}", words.end_value, words.bend)
-          : fmt::format("chance alone would often give such a {}", words.extremum);
+          : fmt::format("no {} is established, chance alone often gives one", words.extremum);
   return fmt::format("cannot decide{}: {} ({})", realizations_of(curve), reason, test);
 }
 

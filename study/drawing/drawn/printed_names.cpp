@@ -86,7 +86,7 @@ std::string printed_name(const std::string& name) {
       {"mean_local_fraction", "mean local packing fraction"},
       {"mean_volume", "mean volume of a cell"},
       {"n_cells", "number of cells"},
-      {"k", "k by moments"},
+      {"k", "k from mean and variance"},
       {"k_gamma_k", "k of the k-gamma law"},
       {"k_gamma_status", "fit of the k-gamma law"},
       {"n_pores", "number of pores"},

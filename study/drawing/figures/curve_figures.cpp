@@ -71,6 +71,20 @@ std::vector<FigureSeries> realization_series(const DrawnFile& file, const std::s
   return series;
 }
 
+/// "thin lines: 5 of 8 realizations"; at several sweep points as many of each.
+std::string thin_lines(const DrawnFile& file, const std::string& name) {
+  std::size_t most = 0, n_points = 0;
+  for (const ShownPoint& point : file.shown_points()) {
+    for (const DrawnColumn& column : file.curve(point.number)->columns) {
+      if (column.label.name != name || column.realizations.empty()) continue;
+      most = std::max(most, column.realizations.size());
+      ++n_points;
+    }
+  }
+  return fmt::format("thin lines: {} of {} realizations{}", most, file.n_realizations(),
+                     n_points > 1 ? " of each sweep point" : "");
+}
+
 void add_mean(const DrawnFile& file, const std::string& name, Figures& figures) {
   const Column& label = file.column(name)->label;
   const std::string errors = file.n_realizations() > 1
@@ -78,7 +92,7 @@ void add_mean(const DrawnFile& file, const std::string& name, Figures& figures) 
                                  : "of one realization, without an error";
   std::vector<FigureSeries> series = column_series(file, name, Shows::mean);
   std::vector<FigureSeries> thin = realization_series(file, name);
-  const std::string lines = thin.empty() ? "" : "; thin lines are single realizations";
+  const std::string lines = thin.empty() ? "" : "; " + thin_lines(file, name);
   series.insert(series.end(), std::make_move_iterator(thin.begin()),
                 std::make_move_iterator(thin.end()));
   add_panel(file, std::nullopt,

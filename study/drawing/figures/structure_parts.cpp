@@ -176,9 +176,9 @@ const std::vector<DrawnPart>& drawn_parts() {
          false, Drawn::joined_points}},
        {{{"s_0_of_line", "s_0_of_squares"}}}},
       {"clusters",
-       {{"relative_variance", "cells", "Variance of clusters of cells", "cells of a cluster",
-         "variance a cell over that of single cells", logarithmic, false, Drawn::joined_points,
-         logarithmic},
+       {{"relative_variance", "cells", "Volume variance of clusters of cells, per cell",
+         "cells of a cluster", "variance per cell / variance of single cells", logarithmic, false,
+         Drawn::joined_points, logarithmic},
         {"chi", "cells", "Compactivity of clusters of cells", "cells of a cluster",
          "χ (sphere volumes)", linear, false, Drawn::joined_points, logarithmic}},
        {{{"mean_volume"}}}}};

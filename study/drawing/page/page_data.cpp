@@ -56,7 +56,7 @@ Json page_data(const ResultsFile& file, const std::string& digest, const PageRoo
   data["curve_points"] = curve_points(drawn);
   data["figures"] = described;
   data["packings"] = page_packings(file, room.packing_bytes, threads, left_out);
-  data["summary"] = summary_section(drawn, run_words(file.study(), drawn));
+  data["summary"] = summary_section(drawn, run_words(file.study(), drawn), file.path());
   data["sections"] = page_sections(drawn, figures,
                                    {.has_grains = common_unit(file.study()) != "trials",
                                     .has_packings = !data["packings"].empty()});

@@ -218,7 +218,7 @@ void add_steadiness(std::span<const Member> members, Table& table) {
     condition = "kinetic: the averaged taps still drift at " + axis + joined(moving, ", ");
   if (!open.empty()) {
     condition.append(condition.empty() ? "" : "; ")
-        .append("not shown to be steady: the averaged taps at " + axis)
+        .append("the averaged taps are not shown to be steady at " + axis)
         .append(joined(open, ", "));
   }
   table.notes.emplace_back(

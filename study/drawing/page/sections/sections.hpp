@@ -12,8 +12,9 @@ struct PageParts {
 Json page_sections(const DrawnFile& file, const std::vector<Figure>& figures,
                    const PageParts& parts);
 
-/// A summary of the file in five lines; `run` is the first.
-Json summary_section(const DrawnFile& file, const std::string& run);
+/// A summary of the file in five lines; `run` is the first. `path` names the file in
+/// commands.
+Json summary_section(const DrawnFile& file, const std::string& run, const std::string& path);
 
 // Each null where the file has nothing for it.
 Json fits_section(const PageContent& content);

@@ -117,7 +117,7 @@ Json part_section(const PageContent& content, const Part& part) {
                         if (table.point() != point) continue;
                         blocks.add(details_block("Numbers by tap", {numbers_table(table, part)}));
                         const std::string region = table.note("region");
-                        blocks.add(small_block(region.empty() ? "" : "Counted " + region + "."));
+                        blocks.add(small_block(region.empty() ? "" : "Counted: " + region + "."));
                       }
                       return blocks;
                     }),

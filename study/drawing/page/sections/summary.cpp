@@ -178,23 +178,31 @@ std::string ageing_answer(const TableView& table) {
   return p < significance_level ? "A(t, t_W) changes with age" : "no change with age found";
 }
 
-std::string or_hint(const std::string& line, const char* command) {
-  return line.empty() ? std::string("not analysed; command: ") + command : line;
+std::string or_hint(const std::string& line, const std::string& command) {
+  return line.empty() ? "not analysed; command: " + command : line;
+}
+
+/// A file's name without its folders: a page does not show where it was made.
+std::string file_name(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
 }
 
 }  // namespace
 
-Json summary_section(const DrawnFile& file, const std::string& run) {
+Json summary_section(const DrawnFile& file, const std::string& run, const std::string& path) {
+  const DrawnColumn* const column = described_column(file);
+  const std::string option = column == nullptr ? "" : ", observable " + column->label.name;
+  const std::string name = file_name(path);
   return page_section(
       "summary", "Summary", "",
       {definitions_block("summary",
                          {{"run", run},
                           {"end", at_the_end(file)},
-                          {"law", or_hint(law_line(file), "jostle fit")},
+                          {"law", or_hint(law_line(file), "jostle fit " + name + option)},
                           {"steady?", or_hint(verdict_line(file, "steady", steady_answer),
-                                              "jostle analyse FILE steady")},
+                                              "jostle analyse " + name + " steady" + option)},
                           {"ageing?", or_hint(verdict_line(file, "ageing", ageing_answer),
-                                              "jostle analyse FILE ageing")}})});
+                                              "jostle analyse " + name + " ageing" + option)}})});
 }
 
 }  // namespace jostle::inline study

@@ -120,7 +120,7 @@ TEST_CASE("A maximum whose place may be the sweep's end is marked") {
   CHECK(near.verdict.ends_with("reaches an end of the sweep"));
   const SweepExtremum far = verdict(-0.02);
   CHECK(far.x_high == 0.4);
-  CHECK(far.verdict.ends_with("two lines)"));
+  CHECK(far.verdict.ends_with("two-lines test)"));
 }
 
 TEST_CASE("A curve without a maximum has none") {
@@ -131,10 +131,10 @@ TEST_CASE("A curve without a maximum has none") {
   CHECK(std::isnan(rising.x_high));
   CHECK(rising.verdict.starts_with("none found: the largest value is at an end of the sweep"));
   CHECK(rising.verdict.ends_with(")"));
-  CHECK(maximum(SweepCurve(x, {3, 2, 1, 1.5, 2}, error)).verdict.ends_with("two lines)"));
+  CHECK(maximum(SweepCurve(x, {3, 2, 1, 1.5, 2}, error)).verdict.ends_with("two-lines test)"));
   const SweepExtremum flat = maximum(SweepCurve(x, {1, 1.01, 1.02, 1.01, 1}, error));
   CHECK(flat.p > 0.1);
-  CHECK(flat.verdict.starts_with("cannot decide: chance alone"));
+  CHECK(flat.verdict.starts_with("cannot decide: no maximum is established, chance alone"));
   CHECK(maximum(SweepCurve({1, 2}, {1, 2}, known({1, 1}))).verdict ==
         "cannot decide: fewer than three different strengths");
   CHECK(maximum(SweepCurve(x, {1, 2, 3, 2, 1}, std::vector<ErrorOf>(5))).verdict ==
@@ -167,7 +167,8 @@ TEST_CASE("A minimum is the maximum of the reflected curve, in words of its own"
   CHECK(minimum(SweepCurve(x, {1, 2, 3, 4, 5}, error))
             .verdict.starts_with("none found: the least value is at an end of the sweep"));
   CHECK(minimum(SweepCurve(x, {1, 0.99, 0.98, 0.99, 1}, error))
-            .verdict.starts_with("cannot decide: chance alone would often give such a minimum"));
+            .verdict.starts_with(
+                "cannot decide: no minimum is established, chance alone often gives one"));
 }
 
 TEST_CASE("A curve whose extreme value is at an end has no extremum inside, whatever a parabola") {
