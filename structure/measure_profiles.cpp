@@ -109,8 +109,12 @@ void add_from_walls(const Packing& packing, HeightWindow window, const SidesSett
 Measurement measure_part(MeasuredPacking& measured, const ProfileSettings& settings) {
   require_floor(measured.packing);
   require_height_bins(measured.packing, settings.bin_width);
-  const Profile vertical =
-      vertical_profile(measured.packing, height_edges(measured.packing, settings.bin_width));
+  // Smoothing carries matter up to half its length above the surface.
+  std::vector<double> edges = height_edges(measured.packing, settings.bin_width);
+  const double top = edges.back() + 0.5 * settings.smoothing;
+  while (edges.back() < top - 1e-9)
+    edges.push_back(static_cast<double>(edges.size()) * settings.bin_width);
+  const Profile vertical = vertical_profile(measured.packing, edges);
   GradientRange range = gradient_range(measured.packing.container);
   if (settings.gradient) {
     range.low = settings.gradient->low;

@@ -66,10 +66,14 @@ Profile smoothed(const Profile& profile, double width) {
     volumes.push_back(volumes.back() + profile.volumes[k]);
   }
   Profile smooth = profile;
+  const double top = profile.edges.back();
+  const double area = profile.volumes.back() / (top - profile.edges[profile.size() - 1]);
   for (std::size_t k = 0; k < profile.size(); ++k) {
     const double low = profile.middle(k) - 0.5 * width, high = profile.middle(k) + 0.5 * width;
-    smooth.values[k] = (interpolate(profile, solids, high) - interpolate(profile, solids, low)) /
-                       (interpolate(profile, volumes, high) - interpolate(profile, volumes, low));
+    const double empty = area * std::max(0.0, high - top);
+    smooth.values[k] =
+        (interpolate(profile, solids, high) - interpolate(profile, solids, low)) /
+        (interpolate(profile, volumes, high) - interpolate(profile, volumes, low) + empty);
   }
   return smooth;
 }

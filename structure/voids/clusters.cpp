@@ -87,14 +87,16 @@ ClusterVolumes cluster_volumes(const Packing& packing, const VoronoiCells& cells
   std::vector clusters_of(n_sizes, std::vector<std::uint32_t>(cells.size(), 0));
   const NeighbourFinder finder(packing, reach(cells, largest));
   std::vector<std::uint32_t> member_of(cells.size(), 0);  // the last cluster's number
-  std::vector<std::pair<double, std::uint32_t>> near;     // distance squared, sphere
+  std::vector<std::pair<double, std::uint32_t>> near;     // distance squared in 1e-9, sphere
   std::uint32_t number = 0;
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
     if (!is_counted(i)) continue;
     ++number;
     near = {{0, i}};
-    finder.visit_neighbours(
-        i, [&](std::uint32_t j, Vec3, double squared) { near.emplace_back(squared, j); });
+    // Touching spheres of a pour are equally far but for rounding: their indices decide.
+    finder.visit_neighbours(i, [&](std::uint32_t j, Vec3, double squared) {
+      near.emplace_back(std::round(squared * 1e9), j);
+    });
     const std::size_t n = std::min<std::size_t>(near.size(), largest);
     std::ranges::partial_sort(near, near.begin() + static_cast<std::ptrdiff_t>(n));
     double volume = 0;

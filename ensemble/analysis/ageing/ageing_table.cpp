@@ -147,13 +147,13 @@ ScaledCurve scaled_curve(const AgeingCurves& curves, std::size_t k, double tau, 
 }
 
 void add_distances(const AgeingCurves& curves, const AgeingFits& fits, Table& table) {
-  std::vector<ScaledCurve> scaled, unscaled;
+  std::vector<ScaledCurve> scaled, unscaled, all;
   for (std::size_t k = 0; k < fits.shared.size(); ++k) {
-    unscaled.push_back(scaled_curve(curves, k, 1, 1));
+    all.push_back(scaled_curve(curves, k, 1, 1));
     const AgeingLaw& law = fits.shared[k];
-    if (law.is_determined()) {
-      scaled.push_back(scaled_curve(curves, k, law.tau.value, law.a_inf.value));
-    }
+    if (!law.is_determined()) continue;
+    scaled.push_back(scaled_curve(curves, k, law.tau.value, law.a_inf.value));
+    unscaled.push_back(all.back());
   }
   const auto add = [&](const char* name, const Collapse& found, const std::string& suffix) {
     table.quantities.push_back(
@@ -165,7 +165,9 @@ void add_distances(const AgeingCurves& curves, const AgeingFits& fits, Table& ta
          ""});
   };
   add("collapse_relative", collapse(scaled), "of scaled_a at equal scaled_lag");
-  add("unscaled_collapse_relative", collapse(unscaled), "of a at equal lag");
+  add("unscaled_collapse_relative", collapse(scaled.size() > 1 ? unscaled : all),
+      "of a at equal lag, of the waiting times that have scales (of all where fewer than two "
+      "have)");
 }
 
 void add_trend(const AgeTrend& trend, const std::string& prefix, const std::string& symbol,

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double step = 0.2;    // step of the grid, in ln B, ln tau and ln A_inf
 constexpr double farthest = 7;  // largest distance of ln A_inf from its best value: a factor 1100
-constexpr double ln_b_range[] = {-6.91, 6.91};
+constexpr double ln_of_1000 = 6.907755278982137;
+constexpr double ln_b_range[] = {-ln_of_1000, ln_of_1000};
 
 std::vector<double> places(double low, double high) {
   const auto n = static_cast<std::size_t>(std::ceil((high - low) / step));
@@ -139,14 +140,20 @@ Eigen::VectorXd AgeingLeastSquares::refined(Eigen::VectorXd parameters,
   Eigen::VectorXd residual = residuals(parameters);
   for (int i = 0; i < 20; ++i) {
     const Eigen::MatrixXd j = slopes(parameters);
-    Eigen::VectorXd change = Eigen::VectorXd::Zero(parameters.size());
-    if (held) {
-      const Eigen::VectorXd other_columns = least_squares(without_column(j, *held), residual);
-      const auto h = static_cast<Eigen::Index>(*held);
-      change << other_columns.head(h), 0, other_columns.tail(other_columns.size() - h);
-    } else {
-      change = least_squares(j, residual);
-    }
+    const auto change_without = [&](std::size_t column) {
+      const Eigen::VectorXd others = least_squares(without_column(j, column), residual);
+      const auto h = static_cast<Eigen::Index>(column);
+      Eigen::VectorXd change = Eigen::VectorXd::Zero(parameters.size());
+      change << others.head(h), 0, others.tail(others.size() - h);
+      return change;
+    };
+    Eigen::VectorXd change = held ? change_without(*held) : least_squares(j, residual);
+    // A B at the end of its range stays there, and the other parameters are fitted to it.
+    const auto b_index = static_cast<Eigen::Index>(b());
+    const double b_change = b_is_held() ? 0 : change[b_index];
+    if (!held && ((b_change < 0 && parameters[b_index] <= low(b())) ||
+                  (b_change > 0 && parameters[b_index] >= high(b()))))
+      change = change_without(b());
     Eigen::VectorXd next = parameters;
     for (std::size_t p = 0; p <= b(); ++p) {
       const auto index = static_cast<Eigen::Index>(p);

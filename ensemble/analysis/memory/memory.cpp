@@ -129,7 +129,7 @@ std::string MemoryTest::statement(const std::string& observable, const std::stri
   if (found.corrected < level) {
     const LagWindow& window = windows[found.window];
     return finite_text(
-        "{} alone is not the state: after {} {} and {} responses differ by {:+.2g} +- {:.1g} "
+        "{} alone is not the state: after {} {} and {} responses differ by {:+.3g} +- {:.2g} "
         "(68 %) at lags {} to {} (p = {:.2g}, {} tests together, {} realizations)",
         observable, control, name_of(found.first), name_of(found.second), found.value,
         student_half_width(found.error.error, static_cast<std::size_t>(found.error.dof) + 1),

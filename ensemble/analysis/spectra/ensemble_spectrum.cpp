@@ -18,9 +18,11 @@ struct Points {
 
 Points in_band(std::span<const double> frequency, std::span<const double> log_density,
                const Band& band) {
+  constexpr double rounding = 1e-9;  // a bin at an end of the band is inside
   Points points;
   for (std::size_t i = 0; i < frequency.size(); ++i) {
-    const bool inside = frequency[i] >= band.lowest && frequency[i] <= band.highest;
+    const bool inside = frequency[i] >= band.lowest * (1 - rounding) &&
+                        frequency[i] <= band.highest * (1 + rounding);
     if (!inside || frequency[i] <= 0 || !std::isfinite(log_density[i])) continue;
     points.x.push_back(std::log(frequency[i]));
     points.y.push_back(log_density[i]);

@@ -181,12 +181,13 @@ ErrorOf scatter_error(const SweepCurve& curve, const LinearFit& fit,
 }
 
 SweepExtremum highest(const SweepCurve& curve, std::size_t points, const ExtremumWords& words) {
-  SweepExtremum found{.x = not_a_number,
-                      .y = not_a_number,
-                      .x_low = not_a_number,
-                      .x_high = not_a_number,
-                      .p = not_a_number,
-                      .verdict = "cannot decide: fewer than three different strengths"};
+  SweepExtremum found{
+      .x = not_a_number,
+      .y = not_a_number,
+      .x_low = not_a_number,
+      .x_high = not_a_number,
+      .p = not_a_number,
+      .verdict = "cannot decide: fewer than three different strengths have a value"};
   points = std::min(std::max<std::size_t>(points, 3), curve.n_points());
   if (points < 3) return found;
   const std::vector<double>& y = curve.fitted_y();

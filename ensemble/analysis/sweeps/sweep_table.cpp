@@ -151,13 +151,17 @@ Table sweep_table(std::string name, const SweptValue& swept, const Column& quant
   if (curve.pools() && curve.pooled().known()) {
     Errors pooled = numbers(errors_of_points(curve));
     add("_pooled_error", std::move(pooled.error), quantity.units,
-        "standard error by the variance pooled over points, as of lines and maxima");
+        curve.streams() == Streams::matched
+            ? "standard error by the pooled variance of points and levels of realizations"
+            : "standard error by the variance pooled over points, as of lines and maxima");
     add("_pooled_dof", std::move(pooled.dof), "1", "its degrees of freedom");
   }
   if (curve.has_realizations()) add("_count", curve.count(), "1", "realizations of the point");
   add_value("pooled_sigma", error_or_nan(curve.pooled()), quantity.units,
-            curve.has_realizations() ? "deviation of one realization, pooled over points"
-                                     : "standard error of a point, pooled over points",
+            !curve.has_realizations() ? "standard error of a point, pooled over points"
+            : curve.streams() == Streams::matched
+                ? "deviation of one realization about its own level, pooled over points"
+                : "deviation of one realization, pooled over points",
             table);
   add_value("pooled_sigma_dof", curve.pooled().dof, "1", "its degrees of freedom", table);
   if (curve.has_realizations()) add_scatter(curve, table);

@@ -187,10 +187,10 @@ std::string control_symbol(const std::string& name) {
   return symbol.empty() ? words(name) : std::string(symbol);
 }
 
-std::string control_label(const std::string& name, const std::string& units) {
+std::string control_label(const std::string& name, const std::string& units,
+                          const std::string& meaning) {
   const std::string_view symbol = symbol_of_control(name);
-  return (symbol.empty() ? words(name) : fmt::format("strength of the taps {}", symbol)) +
-         unit_text(units);
+  return (symbol.empty() ? words(name) : fmt::format("{} {}", meaning, symbol)) + unit_text(units);
 }
 
 std::string control_of(const TableView& table) {

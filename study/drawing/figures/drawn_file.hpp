@@ -83,7 +83,8 @@ std::string axis_label(const std::string& name, const std::string& units);
 /// The symbol of a strength of taps: "√ε" for "sqrt_epsilon"; other quantities in words.
 std::string control_symbol(const std::string& name);
 /// "strength of the taps γ (diameter)".
-std::string control_label(const std::string& name, const std::string& units);
+std::string control_label(const std::string& name, const std::string& units,
+                          const std::string& meaning = "strength of the taps");
 /// The strength that a table has as a quantity, or an empty text.
 std::string control_of(const TableView& table);
 /// " (diameter)"; nothing where there is no unit.

@@ -42,11 +42,12 @@ FigurePanel data_panel(const std::vector<TableView>& laws, const std::string& ob
   if (const std::size_t colon = range.find(':'); colon != std::string::npos) {
     range.replace(colon, 1, " to ");
   }
+  const std::string measured_unit = first.note("x_unit");
   FigurePanel panel{
       .title = "Fits of " + words(observable),
       .caption = data_caption(first, range),
       .x = t_axis(first),
-      .y = {axis_label(observable, first.note("x_unit"))},
+      .y = {axis_label(observable, measured_unit.empty() ? first.units("x") : measured_unit)},
       .series = {{.name = "data",
                   .colour = ink_colour(),
                   .drawn = Drawn::points,

@@ -94,10 +94,11 @@ void add_sweeps(const DrawnFile& file, Figures& figures) {
     const std::string x = table.note("against"), y = table.note("observable");
     if (!table.has_axis(x) || !table.has(y)) continue;
     FigurePanel panel{
-        .title = fmt::format("{} against {}", sentence(words(y)), control_label(x, "1")),
+        .title = fmt::format("{} against {}", sentence(words(y)),
+                             control_label(x, "1", table.long_name(x))),
         .caption = "One point per sweep point; bars are 68 % intervals.",
         .source = table.source(y),
-        .x = {control_label(x, table.units(x))},
+        .x = {control_label(x, table.units(x), table.long_name(x))},
         .y = {axis_label(y, table.units(y))},
         .series = {{.name = "",
                     .colour = kind_colour(0),

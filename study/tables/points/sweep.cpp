@@ -105,7 +105,10 @@ void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, s
   if (line && *line < scene.protocol.size() && !scene.protocol[*line].ramp) {
     const Control strength = control(scene.protocol[*line].tap);
     member.x = strength.value;
-    member.swept = {strength.name, strength.units, "strength of the taps"};
+    member.swept = {strength.name, strength.units,
+                    scene.protocol.size() == 1
+                        ? "strength of the taps"
+                        : fmt::format("strength of the taps of stage {}", *line + 1)};
     return;
   }
   const std::optional<Json> value = scenes.value_at(point, against);

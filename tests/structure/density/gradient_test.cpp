@@ -81,6 +81,11 @@ TEST_CASE("Smoothing is the mean over the boxcar") {
   // Cut short at the end, to two bins and a half.
   const double first = (rough.values[0] + rough.values[1] + 0.5 * rough.values[2]) / 2.5;
   CHECK(smooth.values[0] == Approx(first).epsilon(1e-12));
+  // Above the top there is nothing.
+  const std::size_t last = rough.size() - 1;
+  const double above =
+      (rough.values[last] + rough.values[last - 1] + 0.5 * rough.values[last - 2]) / 4;
+  CHECK(smooth.values[last] == Approx(above).epsilon(1e-12));
   // A straight line stays one, wherever the boxcar fits.
   const Profile straight = line(0.6, -0.01, 0, random);
   const Profile smoothed_profile = smoothed(straight, 1.3);

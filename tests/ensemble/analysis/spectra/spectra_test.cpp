@@ -259,3 +259,10 @@ TEST_CASE("Bands with too few points give no slope") {
   CHECK(std::isnan(log_log_slope(frequency, density, {0.1, 0.35}).slope));
   CHECK(log_log_slope(frequency, density, {0.1, 0.5}).n_points == 3);
 }
+
+TEST_CASE("A bin at the end of a band is inside, whatever its rounding") {
+  const double end = 3.0 / 64;
+  const std::vector<double> frequency{end * (1 - 2e-16), 0.1, 0.2, 0.5 * (1 + 2e-16)},
+      density{4, 3, 2, 1};
+  CHECK(log_log_slope(frequency, density, {end, 0.5}).n_points == 4);
+}

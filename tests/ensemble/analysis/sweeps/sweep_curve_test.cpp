@@ -136,7 +136,7 @@ TEST_CASE("A curve without a maximum has none") {
   CHECK(flat.p > 0.1);
   CHECK(flat.verdict.starts_with("cannot decide: no maximum is established, chance alone"));
   CHECK(maximum(SweepCurve({1, 2}, {1, 2}, known({1, 1}))).verdict ==
-        "cannot decide: fewer than three different strengths");
+        "cannot decide: fewer than three different strengths have a value");
   CHECK(maximum(SweepCurve(x, {1, 2, 3, 2, 1}, std::vector<ErrorOf>(5))).verdict ==
         "cannot decide: there are no errors to test a maximum by");
 }
