@@ -141,10 +141,10 @@ Eigen::VectorXd AgeingLeastSquares::refined(Eigen::VectorXd parameters,
   for (int i = 0; i < 20; ++i) {
     const Eigen::MatrixXd j = slopes(parameters);
     const auto change_without = [&](std::size_t column) {
-      const Eigen::VectorXd others = least_squares(without_column(j, column), residual);
+      const Eigen::VectorXd other_columns = least_squares(without_column(j, column), residual);
       const auto h = static_cast<Eigen::Index>(column);
       Eigen::VectorXd change = Eigen::VectorXd::Zero(parameters.size());
-      change << others.head(h), 0, others.tail(others.size() - h);
+      change << other_columns.head(h), 0, other_columns.tail(other_columns.size() - h);
       return change;
     };
     Eigen::VectorXd change = held ? change_without(*held) : least_squares(j, residual);

@@ -83,9 +83,9 @@ TEST_CASE("Smoothing is the mean over the boxcar") {
   CHECK(smooth.values[0] == Approx(first).epsilon(1e-12));
   // Above the top there is nothing.
   const std::size_t last = rough.size() - 1;
-  const double above =
+  const double last_mean =
       (rough.values[last] + rough.values[last - 1] + 0.5 * rough.values[last - 2]) / 4;
-  CHECK(smooth.values[last] == Approx(above).epsilon(1e-12));
+  CHECK(smooth.values[last] == Approx(last_mean).epsilon(1e-12));
   // A straight line stays one, wherever the boxcar fits.
   const Profile straight = line(0.6, -0.01, 0, random);
   const Profile smoothed_profile = smoothed(straight, 1.3);

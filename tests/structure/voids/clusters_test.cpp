@@ -90,10 +90,10 @@ TEST_CASE("Touching spheres are equally far, whatever the rounding of their plac
   Packing moved = deposit;
   RandomStream random(stream_key(5, 0, 0, Purpose::resampling));
   for (Vec3& centre : moved.centres) centre.z += 1e-13 * (random.uniform() - 0.5);
-  const std::vector<double> before = variances(deposit), after = variances(moved);
-  for (std::size_t k = 0; k < before.size(); ++k) {
+  const std::vector<double> of_deposit = variances(deposit), of_moved = variances(moved);
+  for (std::size_t k = 0; k < of_deposit.size(); ++k) {
     CAPTURE(k);
-    CHECK(after[k] == Approx(before[k]).epsilon(1e-6));
+    CHECK(of_moved[k] == Approx(of_deposit[k]).epsilon(1e-6));
   }
 }
 

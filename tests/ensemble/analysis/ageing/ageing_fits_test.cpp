@@ -203,7 +203,7 @@ TEST_CASE(
   }
   const Table table = ageing_table("ageing", height, rows, grid);
   CHECK(std::isnan(scalar(table, "collapse_relative")));
-  CHECK(std::isfinite(scalar(table, "unscaled_collapse_relative")));  // of all curves
+  CHECK(std::isfinite(scalar(table, "unscaled_collapse_relative")));
   for (const Quantity& quantity : table.quantities) {
     const auto* values = std::get_if<std::vector<double>>(&quantity.values);
     if (values == nullptr) continue;
