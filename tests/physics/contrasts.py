@@ -115,37 +115,6 @@ def nu_steps():
     return [contrast(points, [float(i == k) - float(i == k + 1) for i in range(5)], 2, True) for k in range(4)]
 
 
-def moves(*weights):
-    """A contrast of gains at d_max = 0.1, weights over theta_0; the variance is pooled over all thirty settings."""
-    header = read_table(REDUCED / "pb-moves" / "1.csv")[0]
-    points = [column("pb-moves", 1, name, 2) for name in header[1:]]
-    error = np.sqrt(np.mean([e**2 for names in points for _, _, e in names]))
-    gains = [[value for _, value, _ in names] for names in points]
-    value = sum(weight * 1e-4 * gains[j][i] for i, j, weight in weights)
-    return Estimate(float(value), float(1e-4 * error * np.sqrt(sum(w**2 for *_, w in weights))), 60)
-
-
-def optimum_of_angle():
-    """The gain at pi/4 less that at pi/8, 3 pi/8 and pi/2."""
-    return [moves((3, 2, 1), (k, 2, -1)) for k in (1, 4, 5)]
-
-
-def wide_angle_loses():
-    return [moves((3, 2, 1), (5, 2, -1))]
-
-
-def small_angle_decompacts():
-    return [moves((0, 2, -1))]
-
-
-def short_steps_freeze():
-    return [moves((3, 2, 1), (3, 0, -1))]
-
-
-def long_steps_freeze():
-    return [moves((3, 2, 1), (3, 4, -1))]
-
-
 def lifts():
     return column("dr4", 1, "400", 2)
 
@@ -234,25 +203,6 @@ def slope_25():
 
 def slope_30():
     return slope(3)
-
-
-BEST, FREEZES = "theta_0 = pi/4 compacts most, d_max = R/5", "a {} d_max freezes the bed"
-FORM = "the width of the law matters, not its form: {} (0.002)"
-
-
-def form(place):
-    """The gain with another law less that with the Gaussian; the variance of all nine paired differences of the run."""
-    return [stated("pb-moves", [(FORM.format("exponential"), 0), (FORM.format("linear"), 0),
-                                *((BEST, k) for k in range(5)), (FREEZES.format("very small"), 0),
-                                (FREEZES.format("large"), 0)], 2)[place]]
-
-
-def exponential_form():
-    return form(0)
-
-
-def linear_form():
-    return form(1)
 
 
 def alpha_hysteresis():

@@ -88,6 +88,58 @@ def pours_fall():
     return [Estimate.of(whole_bed(point)[:beds] - whole_bed(point + 1)[:beds]) for point in range(FRICTIONS - 1)]
 
 
+MOVES = "pb-move-settings"   # its first point is [PB]'s move: theta_0 = pi/4, d_max = 0.1, the Gaussian law
+
+
+def gain_of_move(point, setting):
+    """The gain of Phi_c within 30 taps, [bed]."""
+    assert label(MOVES, point).startswith(setting), label(MOVES, point)
+    return series(MOVES, point, "corrected_fraction", 30) - series(MOVES, point, "corrected_fraction", 0)
+
+
+def gain_above(*points_and_settings):
+    """The gain of [PB]'s move less that of others, in pairs."""
+    best = gain_of_move(0, "theta0 = 0.7854, max_step = 0.1")
+    return [Estimate.of(best - gain_of_move(*other)) for other in points_and_settings]
+
+
+def optimum_of_angle():
+    """The gain at pi/4 less that at pi/8, 3 pi/8 and pi/2."""
+    return gain_above((2, "theta0 = 0.3927"), (4, "theta0 = 1.1781"), (5, "theta0 = 1.5708"))
+
+
+def wide_angle_loses():
+    return gain_above((5, "theta0 = 1.5708"))
+
+
+def small_angle_decompacts():
+    return [Estimate.of(-gain_of_move(1, "theta0 = 0.0982"))]
+
+
+def short_steps_freeze():
+    return gain_above((6, "theta0 = 0.7854, max_step = 0.003"))
+
+
+def long_steps_freeze():
+    return gain_above((9, "theta0 = 0.7854, max_step = 1"))
+
+
+def width_above_form(point, setting):
+    """The change of the gain by the next width of the ladder, to either side, less that by another form with
+    the same mean square angle, of either sign."""
+    best, form = gain_of_move(0, "theta0 = 0.7854"), gain_of_move(point, setting)
+    narrow, wide = gain_of_move(3, "theta0 = 0.589"), gain_of_move(4, "theta0 = 1.1781")
+    return [Estimate.of(width - sign * (form - best)) for width in (best - narrow, wide - best) for sign in (1, -1)]
+
+
+def exponential_form():
+    return width_above_form(10, "theta0 = 0.4677")
+
+
+def linear_form():
+    return width_above_form(11, "theta0 = 1.3318")
+
+
 def smooth_pours():
     assert label("dr-pours", 0) == "friction = 0"
     return [Estimate.of(whole_bed(0))]
