@@ -334,6 +334,15 @@ class Analysed(Case):
         self.assertAlmostEqual(values["area_error"]["values"][0] / (area.std(ddof=1) / 3 ** 0.5), 1,
                                places=9)
 
+    def test_a_sweep_over_a_stage_of_several_names_the_stage(self):
+        taps = [{"tap": {"dilate": 0.05}, "count": 10}, {"tap": {"dilate": 0.02}, "count": 20}]
+        self.write(changed(TAPPED, protocol=taps, sweep={"/protocol/0/tap/dilate": [0.01, 0.04, 0.09]},
+                           analyse={"sweep": [{"observable": "mean_height", "last": 10}]}))
+        self.run_scene()
+        with h5py.File(self.folder / "tiny.h5") as stored:
+            axis = stored["analysis/sweep/mean_height/value/sqrt_epsilon"]
+            self.assertEqual(axis.attrs["long_name"], "strength of the taps of stage 1")
+
     def test_a_sweep_is_drawn_against_the_square_root_of_epsilon(self):
         asked = {"steady": [{"observable": "mean_height"}],
                  "sweep": [{"observable": "bottom_fraction", "last": 50},
@@ -356,6 +365,12 @@ class Analysed(Case):
             means = [self.series("bottom_fraction", point)[-50:].mean() for point in (1, 2, 0)]
             for found, mean in zip(value["bottom_fraction"][:], means):
                 self.assertAlmostEqual(found / mean, 1, places=12)
+            # Matched streams: the deviation about the level of each realization.
+            rows = np.array([self.series("bottom_fraction", point)[-50:].mean(axis=0) for point in (1, 2, 0)])
+            rest = rows - rows.mean(axis=0) - rows.mean(axis=1)[:, None] + rows.mean()
+            dof = (rows.shape[0] - 1) * (rows.shape[1] - 1)
+            self.assertAlmostEqual(value["pooled_sigma"][()] / ((rest ** 2).sum() / dof) ** 0.5, 1, places=9)
+            self.assertIn("about its own level", value["pooled_sigma"].attrs["long_name"])
             # A deviation that is only known to be at least its value is no point.
             steady = [stored[f"analysis/point_{point:04}/steady/mean_height/sigma"] for point in (1, 2, 0)]
             measured = [sigma[()] for sigma in steady

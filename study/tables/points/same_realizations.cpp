@@ -121,4 +121,18 @@ void require_different_ensembles(std::span<const ResultsFile* const> files) {
   }
 }
 
+Streams streams_of(std::vector<RandomKey> keys) {
+  const std::size_t n_points = keys.size();
+  std::ranges::sort(keys);
+  const auto repeated = std::ranges::unique(keys);
+  const std::size_t n = n_points - repeated.size();
+  if (n == 1) return Streams::matched;
+  if (n == n_points) return Streams::independent;
+  throw BadInput(fmt::format(
+      "some of the {} points share starts and random numbers (one seed, matched streams), others "
+      "do not: the points are neither paired nor independent. Analyse files of one seed together, "
+      "and those of another by themselves",
+      n_points));
+}
+
 }  // namespace jostle::inline study

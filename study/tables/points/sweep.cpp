@@ -40,11 +40,11 @@ struct Member {
   double y = not_a_number;
   ErrorOf y_error;
   Column label;
-  std::pair<std::uint64_t, std::uint64_t> stream;  // seed, point id
-  std::string taps;                                // whose mean the value is: "151 to 200"
-  std::optional<Verdict> steady;                   // verdict on these taps; none for too few
-  std::string no_value;                            // why it has none, where that is known
-  bool error_is_no_basis = false;                  // a fit's, of too few realizations
+  RandomKey key;
+  std::string taps;                // whose mean the value is: "151 to 200"
+  std::optional<Verdict> steady;   // verdict on these taps; none for too few
+  std::string no_value;            // why it has none, where that is known
+  bool error_is_no_basis = false;  // a fit's, of too few realizations
 };
 
 /// "/protocol/0/tap/dilate" -> 0.
@@ -153,23 +153,6 @@ void set(Member& member, DerivedValue&& derived) {
   member.steady = derived.steady;
 }
 
-/// Throws BadInput where only some points share their random numbers: their errors are neither
-/// those of pairs nor those of independent points.
-Streams streams_of(std::span<const Member> members) {
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> streams;
-  for (const Member& member : members) streams.push_back(member.stream);
-  std::ranges::sort(streams);
-  const auto repeated = std::ranges::unique(streams);
-  const std::size_t n = streams.size() - repeated.size();
-  if (n == 1) return Streams::matched;
-  if (n == members.size()) return Streams::independent;
-  throw BadInput(fmt::format(
-      "some of the {} points share starts and random numbers (one seed, matched streams), others "
-      "do not: the points are neither paired nor independent. Analyse files of one seed together, "
-      "and those of another by themselves",
-      members.size()));
-}
-
 /// The point of the curve at this place of its axis, to the four digits that tables have of it,
 /// where these leave one.
 std::size_t point_at(const SweepCurve& curve, double x, const std::string& axis) {
@@ -260,6 +243,7 @@ Table curve_table(std::string name, std::span<const Member> members,
   std::vector<double> x, y;
   std::vector<ErrorOf> y_error;
   std::vector<std::vector<double>> realizations;
+  std::vector<RandomKey> keys;
   for (const Member& member : members) {
     if (member.swept.name != members.front().swept.name) {
       throw BadInput(fmt::format("{} and {} are not one sweep", member.swept.name,
@@ -269,11 +253,12 @@ Table curve_table(std::string name, std::span<const Member> members,
     y.push_back(member.y);
     y_error.push_back(member.y_error);
     realizations.push_back(member.realizations);
+    keys.push_back(member.key);
   }
   const bool means = std::ranges::any_of(
       members, [](const Member& member) { return !member.realizations.empty(); });
   const SweepCurve curve =
-      means ? SweepCurve(x, realizations, streams_of(members)) : SweepCurve(x, y, y_error);
+      means ? SweepCurve(x, realizations, streams_of(keys)) : SweepCurve(x, y, y_error);
   std::optional<std::size_t> point;
   if (reference) point = point_at(curve, *reference, members.front().swept.name);
   const auto valued =
@@ -335,8 +320,8 @@ std::vector<Member> members_of(std::span<SweptFile> files,
       } else if (settings.quantity != "value") {
         set(member, derived_value(swept.tables(), point, observable, settings.quantity));
       }
-      member.stream = {studied.seed,
-                       scenes.point_scene(point).streams == Streams::matched ? 0 : studied.id};
+      member.key = {studied.seed,
+                    scenes.point_scene(point).streams == Streams::matched ? 0 : studied.id};
       members.push_back(std::move(member));
     }
   }

@@ -4,8 +4,10 @@
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "ensemble/analysis/ageing/ageing_table.hpp"
+#include "ensemble/analysis/ageing/law.hpp"
 #include "tests/ensemble/analysis/ageing/ageing_paths.hpp"
 
 namespace jostle {
@@ -31,6 +33,12 @@ TapRows eq_6_rows(std::uint64_t seed, std::uint32_t realizations, double common_
     }
   }
   return rows;
+}
+
+std::vector<std::uint32_t> all_of(std::uint32_t n) {
+  std::vector<std::uint32_t> numbers(n);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  return numbers;
 }
 
 // All numbers of a table, as bits: NaN are equal to themselves.
@@ -179,6 +187,29 @@ TEST_CASE("Where B has no limit it is held, and curves keep their scales", "[sta
   CHECK(std::isnan(scalar(table, "shared_tau_low_95")));
   CHECK(scalar(table, "shared_tau") == fits.shared[0].tau.value);
   CHECK(std::isfinite(scalar(table, "scaled_a_error")));
+}
+
+TEST_CASE("Where B is at the end of its range, scales and times are fitted to it") {
+  // A power above 1 of the logarithm over all lags: eq. 6 comes closest with the least B.
+  TapRows rows{.taps = taps_of(grid), .realizations = 4, .values = {}};
+  for (const std::uint64_t tap : rows.taps) {
+    const std::uint64_t k = tap / 1000000, lag = tap % 1000000;
+    const double spread = std::pow(std::log1p(static_cast<double>(lag) / (0.01 * tau[k])), 0.55);
+    for (const int sign : {-1, 1, -1, 1}) rows.values.push_back(10 + sign * spread);
+  }
+  const AgeingLeastSquares fit(log_curves(rows, grid, all_of(4)));
+  const Eigen::VectorXd best = fit.best();
+  const auto b_place = static_cast<Eigen::Index>(fit.b());
+  REQUIRE(std::exp(best[b_place]) == Approx(0.001).epsilon(1e-9));
+  const double least = fit.residuals(best).squaredNorm();
+  for (Eigen::Index i = 0; i < b_place; ++i) {
+    for (const double change : {-0.01, 0.01}) {
+      CAPTURE(i, change);
+      Eigen::VectorXd moved = best;
+      moved[i] += change;
+      CHECK(fit.residuals(moved).squaredNorm() > least);
+    }
+  }
 }
 
 TEST_CASE(
