@@ -86,10 +86,35 @@ std::string word_of(const std::string& kind) {
   return word;
 }
 
+/// The central spheres of each kind, and whether there are any.
+void add_centres(const Packing& packing, HeightWindow heights, Measurement& measurement) {
+  const Sizes& sizes = *packing.sizes;
+  std::vector<std::string> names;
+  for (const SphereKind& kind : sizes.kinds()) names.push_back(kind.name);
+  std::vector<double> centres(names.size(), 0.0);
+  double n_centres = 0;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const double z = packing.centres[i].z;
+    if (z < heights.low || z > heights.high) continue;
+    centres[sizes.kind(i)] += 1;
+    n_centres += 1;
+  }
+  measurement.places.push_back({"kind", std::move(names), "1", "kind of spheres"});
+  measurement.quantities.push_back({.name = "centres_of_kind",
+                                    .places = "kind",
+                                    .values = std::move(centres),
+                                    .long_name = "central spheres of a kind, of all packings",
+                                    .pooling = Pooling::sum});
+  measurement.quantities.push_back({.name = "packings",
+                                    .values = {n_centres > 0 ? 1.0 : 0.0},
+                                    .long_name = "packings that have a central sphere",
+                                    .pooling = Pooling::sum});
+}
+
 Measurement measured_partial_pairs(const MeasuredPacking& measured, const PairsSettings& settings) {
   const double x_max = settings.r_max.value_or(widest_partial_pairs(measured.packing));
-  const std::vector<PartialCorrelation> all =
-      partial_correlations(measured.packing, {.r_max = x_max, .bin_width = settings.bin_width});
+  const PairCorrelationSettings reach{.r_max = x_max, .bin_width = settings.bin_width};
+  const std::vector<PartialCorrelation> all = partial_correlations(measured.packing, reach);
   Measurement measurement;
   measurement.places = {{"r", all.front().x, "sum of radii",
                          "distance of centres over the sum of the two radii, middle of a bin"}};
@@ -113,6 +138,7 @@ Measurement measured_partial_pairs(const MeasuredPacking& measured, const PairsS
          .long_name = "pairs of two kinds found from the central spheres, of all packings",
          .pooling = Pooling::sum});
   }
+  add_centres(measured.packing, central_heights(measured.packing, reach), measurement);
   return measurement;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "engine/bed/boundary.hpp"
+#include "structure/order/expected_at_walls.hpp"
 #include "structure/order/neighbours.hpp"
 #include "structure/order/whole_shells.hpp"
 
@@ -57,6 +58,47 @@ std::size_t place_of(std::uint32_t a, std::uint32_t b, std::size_t n_kinds) {
   return low * n_kinds - low * (low + 1) / 2 + high;
 }
 
+/// Calls `visit(i, j)` for every central sphere i and every other sphere j.
+template <class Visit>
+void visit_central_pairs(const Packing& packing, HeightWindow heights, Visit visit) {
+  for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+    const double height = packing.centres[i].z;
+    if (height < heights.low || height > heights.high) continue;
+    for (std::size_t j = 0; j < packing.centres.size(); ++j) {
+      if (j != i) visit(i, j);
+    }
+  }
+}
+
+void expect_between_periods(const Packing& packing, HeightWindow heights, double bin_width,
+                            std::vector<PartialCorrelation>& all) {
+  const Sizes& sizes = *packing.sizes;
+  const Boundary boundary(packing.container);
+  const double area = boundary.width_x * boundary.width_y;
+  std::vector<ExpectedPairs> expected(all.size(),
+                                      ExpectedPairs(all.front().counts.size(), bin_width));
+  visit_central_pairs(packing, heights, [&](std::size_t i, std::size_t j) {
+    ExpectedPairs& target = expected[place_of(sizes.kind(i), sizes.kind(j), sizes.kinds().size())];
+    const double contact = sizes.radius(i) + sizes.radius(j);
+    if (boundary.periodic_z)
+      target.add_shells(contact, 1 / (area * boundary.height));
+    else
+      target.add_annuli(contact, packing.centres[j].z - packing.centres[i].z, 1 / area);
+  });
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].expected = std::move(expected[k]).bins();
+}
+
+void expect_at_walls(const Packing& packing, HeightWindow heights, double farthest,
+                     double bin_width, std::vector<PartialCorrelation>& all) {
+  ExpectedAtWalls expected(packing, {heights.low - farthest, heights.high + farthest},
+                           all.front().counts.size(), bin_width);
+  visit_central_pairs(packing, heights, [&](std::size_t i, std::size_t j) {
+    const double height = packing.centres[j].z - packing.centres[i].z;
+    if (std::abs(height) <= farthest) expected.add(i, j, height);
+  });
+  for (PartialCorrelation& pairs : all) pairs.expected = expected.bins(pairs.first, pairs.second);
+}
+
 }  // namespace
 
 std::optional<std::string> partial_pairs_fault(const Container& container, double largest,
@@ -66,9 +108,6 @@ std::optional<std::string> partial_pairs_fault(const Container& container, doubl
     return "partial g(r): there are " + std::to_string(n_kinds) +
            " kinds of spheres; pairs of at most " + std::to_string(most_kinds_of_pairs) +
            " kinds are counted";
-  if (boundary.has_walls())
-    return "partial g(r) requires periodic sides: the correction for walls is known for equal "
-           "spheres alone";
   const double half = 0.5 * narrowest_period(boundary);
   if (r_max && *r_max * largest > half * (1 + 1e-9))
     return "partial g(r): " + std::to_string(*r_max) + " sums of radii are " +
@@ -92,6 +131,11 @@ double widest_partial_pairs(const Packing& packing) {
   return std::min(std::floor(widest / tenth + 1e-9) * tenth, usual);
 }
 
+HeightWindow central_heights(const Packing& packing, const PairCorrelationSettings& settings) {
+  const double farthest = settings.r_max * 2 * packing.largest_radius();
+  return settings.heights.value_or(bulk_heights(packing, farthest));
+}
+
 std::vector<PartialCorrelation> partial_correlations(const Packing& packing,
                                                      const PairCorrelationSettings& settings) {
   assert(packing.sizes && settings.bin_width > 0 && !packing.centres.empty());
@@ -102,7 +146,7 @@ std::vector<PartialCorrelation> partial_correlations(const Packing& packing,
                                              sizes.kinds().size(), settings.r_max))
     throw std::invalid_argument(*fault);
   const double farthest = settings.r_max * 2 * sizes.largest_radius();
-  const HeightWindow heights = settings.heights.value_or(bulk_heights(packing, farthest));
+  const HeightWindow heights = central_heights(packing, settings);
   const auto n_bins = static_cast<std::size_t>(settings.r_max / settings.bin_width + 1e-9);
   const std::size_t n_kinds = sizes.kinds().size();
   std::vector<PartialCorrelation> all;
@@ -115,8 +159,6 @@ std::vector<PartialCorrelation> partial_correlations(const Packing& packing,
       all.push_back(std::move(pairs));
     }
   }
-  std::vector<ExpectedPairs> expected(all.size(), ExpectedPairs(n_bins, settings.bin_width));
-  const double area = boundary.width_x * boundary.width_y;
   const NeighbourFinder finder(packing, farthest);
   for (std::uint32_t i = 0; i < finder.size(); ++i) {
     const double height = packing.centres[i].z;
@@ -127,17 +169,11 @@ std::vector<PartialCorrelation> partial_correlations(const Packing& packing,
       const auto bin = static_cast<std::size_t>(x / settings.bin_width + early);
       if (bin < n_bins) ++all[place_of(sizes.kind(i), sizes.kind(j), n_kinds)].counts[bin];
     });
-    for (std::uint32_t j = 0; j < finder.size(); ++j) {
-      if (j == i) continue;
-      ExpectedPairs& target = expected[place_of(sizes.kind(i), sizes.kind(j), n_kinds)];
-      const double contact = sizes.radius(i) + sizes.radius(j);
-      if (boundary.periodic_z)
-        target.add_shells(contact, 1 / (area * boundary.height));
-      else
-        target.add_annuli(contact, packing.centres[j].z - height, 1 / area);
-    }
   }
-  for (std::size_t k = 0; k < all.size(); ++k) all[k].expected = std::move(expected[k]).bins();
+  if (boundary.has_walls())
+    expect_at_walls(packing, heights, farthest, settings.bin_width, all);
+  else
+    expect_between_periods(packing, heights, settings.bin_width, all);
   return all;
 }
 

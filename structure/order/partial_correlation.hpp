@@ -27,6 +27,9 @@ struct PartialCorrelation {
   std::vector<double> g() const;
 };
 
+/// Heights of the central spheres: `settings.heights`, or bulk_heights() for the largest distance.
+HeightWindow central_heights(const Packing& packing, const PairCorrelationSettings& settings);
+
 /// Returns why partial_correlations() does not take such packings, or nothing. `largest`: the
 /// largest diameter; `r_max` in sums of radii, absent for the widest that suits.
 std::optional<std::string> partial_pairs_fault(const Container& container, double largest,
@@ -36,19 +39,20 @@ std::optional<std::string> partial_pairs_fault(const Container& container, doubl
 double widest_partial_pairs(const Packing& packing);
 
 /// Returns the pairs of each two kinds, in the order 0-0, 0-1, ..., 1-1, ...: one sphere is
-/// central, between `settings.heights` (by default bulk_heights() for the largest distance), the
-/// other is anywhere. r_max and bin_width are in sums of radii.
+/// central, between central_heights(), the other is anywhere. r_max and bin_width are in sums of
+/// radii. A pair of kinds is counted from the spheres of both, so that g_ij = g_ji.
 ///
-/// Expected: every sphere keeps its height and its radius and is anywhere in the footprint. The
-/// part of a shell of pair (i, j), whose centres are h apart in height, is then an annulus of the
-/// footprint: its area is pi (max(0, r_2^2 - h^2) - max(0, r_1^2 - h^2)), r_1 and r_2 being the
-/// ends of the bin times s_ij. Sums over pairs are exact for any heights and sizes, floor and
-/// surface included. A box that is periodic upwards has whole shells. Layers are divided out as far
-/// as single spheres make them: g of a bed compares equal heights alone.
+/// Expected: every sphere keeps its height and its radius. Between periodic sides it is anywhere in
+/// the footprint. The part of a shell of pair (i, j), whose centres are h apart in height, is then
+/// an annulus of the footprint: its area is pi (max(0, r_2^2 - h^2) - max(0, r_1^2 - h^2)), r_1 and
+/// r_2 being the ends of the bin times s_ij. Between walls and in a tube it is anywhere in the
+/// region that its own radius leaves, where its kind is: ExpectedAtWalls. Both numbers are exact
+/// for an ideal gas of any heights and sizes, floor and surface included. A box that is periodic
+/// upwards has whole shells. Layers are divided out as far as single spheres make them: g of a bed
+/// compares equal heights alone.
 ///
-/// Throws std::invalid_argument with the text of partial_pairs_fault(): where sides are walls,
-/// which have no such closed form, where a distance exceeds half a period, and with more than 8
-/// kinds. Requires sizes.
+/// Throws std::invalid_argument with the text of partial_pairs_fault(): where a distance exceeds
+/// half a period, and with more than 8 kinds. Requires sizes.
 std::vector<PartialCorrelation> partial_correlations(const Packing& packing,
                                                      const PairCorrelationSettings& settings = {});
 
