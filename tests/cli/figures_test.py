@@ -4,7 +4,6 @@ the digit, what hostile texts do in them, and what they may be written to."""
 import csv
 import json
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -14,8 +13,8 @@ import xml.etree.ElementTree
 import h5py
 import numpy
 
-from crafted_test import SEAL, sealed
-from report_test import EVERYTHING, HOSTILE
+from crafted_files import SEAL, sealed
+from report_pages import EVERYTHING, HOSTILE
 from support import BAD_INPUT, BROKEN, EVERY, HALF_OF_THREE, SHIM, SOURCE, TINY, Case, changed
 
 PYTHON = sys.executable  # has what the tests need

@@ -9,7 +9,7 @@ import unittest
 import h5py
 import numpy as np
 
-from crafted_test import SEAL, sealed
+from crafted_files import SEAL, sealed
 from support import BAD_INPUT, BROKEN, SOURCE, Case, changed
 
 WIDTH = 6.0

@@ -8,13 +8,13 @@ import unittest
 import h5py
 import numpy as np
 
+from crafted_files import SEAL
 from support import BROKEN, JOSTLE, OK, SOURCE, STOPPED, SLOW, TINY, Case, changed
 
 sys.path.insert(0, str(SOURCE / "python"))
 import jostle  # noqa: E402
 
 TINY = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}], snapshots={"taps": [0, 40]})
-SEAL = len("\njostle-sha256 \n") + 64
 GRAINS = changed(TINY, spheres=20, realizations=2, observe=["mean_height"], start={"random_settle": {}},
                  engine={"discrete_element": {"contact": {"walton_braun": {"stiffness": 1000}}}},
                  protocol=[{"tap": {"lift": 0.05}, "count": 2}], snapshots={"taps": [0, 2]})

@@ -5,8 +5,8 @@ import json
 
 import h5py
 
-from crafted_test import SEAL, sealed
-from report_test import EVERYTHING, HOSTILE
+from crafted_files import SEAL, sealed
+from report_pages import EVERYTHING, HOSTILE
 from support import TINY, changed
 
 WHOLE = changed(EVERYTHING, structure={**EVERYTHING["structure"], "sides": {}, "coordination": {},
