@@ -1,4 +1,4 @@
-"""Streams that go away, files without results and early signals: the run goes on or stops resumably, and says so."""
+"""Streams that go away, files without results, and early signals: no run is lost, and messages name the cause."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""The page of jostle report in headless Chromium: its sections, and that they say what the file says."""
+"""The page of jostle report in headless Chromium: its sections have the values of the file."""
 
 import base64
 import json

@@ -90,7 +90,7 @@ double mean_of(const std::vector<Vec3>& moved, std::size_t kind, const Value& va
   return sum / static_cast<double>(last - first);
 }
 
-const std::vector<double>& column(const Table& table, const std::string& name) {
+const std::vector<double>& column(const Table& table, std::string_view name) {
   const auto found = std::ranges::find(table.quantities, name, &Quantity::name);
   REQUIRE(found != table.quantities.end());
   return std::get<std::vector<double>>(found->values);
