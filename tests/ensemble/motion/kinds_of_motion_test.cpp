@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string_view>
 
 #include "engine/bed/boundary.hpp"
 #include "ensemble/analysis/motion/motion_tables.hpp"
