@@ -190,7 +190,7 @@ TEST_CASE("the ledger of a tap closes, and better as the step shrinks") {
   CHECK(missing(LinearSpringDashpot{}, 1) < 2e-3);
 }
 
-TEST_CASE("the ledger of a tap of 3456 grains closes to a thousandth", "[slow]") {
+TEST_CASE("the ledger of a tap of 3456 grains closes to a thousandth", "[nightly]") {
   const auto missing = [](double finer) {
     return missing_of_tap({12, 12}, 3456, 20, WaltonBraun{}, finer);
   };

@@ -277,7 +277,7 @@ TEST_CASE("Intervals of sigma and of the autocorrelation time hold them, or are 
   check_memories({75}, 100);
 }
 
-TEST_CASE("Intervals of sigma and of the autocorrelation time hold them, of any length", "[slow]") {
+TEST_CASE("Intervals of sigma and of the autocorrelation time hold them, of any length", "[nightly]") {
   check_memories({75, 300, 1000}, 400);
 }
 

@@ -113,6 +113,6 @@ TEST_CASE("both samplers have one law in mixtures: small beds", "[statistics]") 
   check_law(1, 20, 1e-4);
 }
 
-TEST_CASE("both samplers have one law in mixtures: beds of hundreds of spheres", "[slow]") {
+TEST_CASE("both samplers have one law in mixtures: beds of hundreds of spheres", "[nightly]") {
   check_law(4, 20, 1e-5);
 }

@@ -179,6 +179,6 @@ TEST_CASE("The best point for order and the largest value differ at the stated r
   check_verdicts({4, 10}, 60);
 }
 
-TEST_CASE("The best point for order and the largest value differ, 3 to 20 realizations", "[slow]") {
+TEST_CASE("The best point for order and the largest value differ, 3 to 20 realizations", "[nightly]") {
   check_verdicts({3, 4, 10, 20}, 300);
 }
