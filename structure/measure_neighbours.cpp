@@ -8,9 +8,9 @@
 #include "structure/measure_parts.hpp"
 #include "structure/order/bond_order.hpp"
 #include "structure/order/crystal_order.hpp"
+#include "structure/order/mixtures/partial_correlation.hpp"
 #include "structure/order/ordered_front.hpp"
 #include "structure/order/pair_correlation.hpp"
-#include "structure/order/partial_correlation.hpp"
 #include "structure/snapshot_statistics.hpp"
 
 namespace jostle::inline structure {

@@ -5,7 +5,7 @@
 #include "config/parts/parts.hpp"
 #include "engine/bed/boundary.hpp"
 #include "ensemble/statistics/finite_text.hpp"
-#include "structure/order/partial_correlation.hpp"
+#include "structure/order/mixtures/partial_correlation.hpp"
 
 namespace jostle::inline config {
 

@@ -11,7 +11,7 @@
 #include "engine/bed/slab.hpp"
 #include "structure/density/profiles.hpp"
 #include "structure/measure.hpp"
-#include "structure/order/partial_correlation.hpp"
+#include "structure/order/mixtures/partial_correlation.hpp"
 #include "structure/voids/voronoi.hpp"
 #include "tests/engine/sample_packings.hpp"
 #include "tests/structure/reference_deposit.hpp"

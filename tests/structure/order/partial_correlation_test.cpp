@@ -1,5 +1,5 @@
 // Partial pair correlations of fluids without gravity.
-#include "structure/order/partial_correlation.hpp"
+#include "structure/order/mixtures/partial_correlation.hpp"
 
 #include <array>
 #include <catch2/catch.hpp>

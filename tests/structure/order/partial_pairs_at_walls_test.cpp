@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "structure/order/partial_correlation.hpp"
+#include "structure/order/mixtures/partial_correlation.hpp"
 #include "tests/structure/order/mixed_points.hpp"
 
 using namespace jostle;

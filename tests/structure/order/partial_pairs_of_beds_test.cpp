@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "engine/starts/starts.hpp"
+#include "structure/order/mixtures/partial_correlation.hpp"
 #include "structure/order/pair_correlation.hpp"
-#include "structure/order/partial_correlation.hpp"
 #include "tests/structure/order/mixed_points.hpp"
 
 using namespace jostle;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "structure/order/partial_correlation.hpp"
+#include "structure/order/mixtures/partial_correlation.hpp"
 #include "tests/structure/order/mixed_points.hpp"
 
 using namespace jostle;

@@ -1,4 +1,4 @@
-#include "structure/order/partial_correlation.hpp"
+#include "structure/order/mixtures/partial_correlation.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "engine/bed/boundary.hpp"
-#include "structure/order/expected_at_walls.hpp"
+#include "structure/order/mixtures/expected_at_walls.hpp"
 #include "structure/order/neighbours.hpp"
 #include "structure/order/whole_shells.hpp"
 

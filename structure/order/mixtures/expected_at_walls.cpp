@@ -1,4 +1,4 @@
-#include "structure/order/expected_at_walls.hpp"
+#include "structure/order/mixtures/expected_at_walls.hpp"
 
 #include <algorithm>
 #include <cmath>

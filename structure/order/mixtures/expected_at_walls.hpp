@@ -7,7 +7,7 @@
 
 #include "engine/bed/packing.hpp"
 #include "engine/bed/window.hpp"
-#include "structure/order/footprint_pairs.hpp"
+#include "structure/order/mixtures/footprint_pairs.hpp"
 
 namespace jostle::inline structure {
 

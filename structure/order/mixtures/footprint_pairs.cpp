@@ -1,4 +1,4 @@
-#include "structure/order/footprint_pairs.hpp"
+#include "structure/order/mixtures/footprint_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>
