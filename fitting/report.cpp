@@ -37,11 +37,6 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   return text.str();
 }
 
-// "p = 0.013", "p < 1e-06".
-std::string p_text(double p) {
-  return p < 1e-6 ? "p < 1e-06" : "p = " + number(p, 2);
-}
-
 const char* verdict_text(Identifiability identifiability) {
   switch (identifiability) {
     case Identifiability::fixed:
@@ -151,7 +146,7 @@ std::string statistics(const Fit& fit) {
        << ", worth " << number(fit.effective_size, 4) << " independent points, by weight "
        << number(fit.weighted_size, 4) << " points\n";
   text << "  condition " << number(fit.condition, 3) << ", " << fit.runs.runs << " runs ("
-       << number(fit.runs.expected, 4) << " expected, p = " << number(fit.runs.p, 2) << ")\n";
+       << number(fit.runs.expected, 4) << " expected, " << p_value_text(fit.runs.p) << ")\n";
   return text.str();
 }
 
@@ -197,7 +192,7 @@ std::vector<const Fit*> distinct(const std::vector<Fit>& fits) {
 
 // How a law compares with the leading one: "two_exponentials (p = 0.0013)".
 std::string compared_text(const HeldOutLaw& law) {
-  return law.model + " (" + (law.same_curve ? "same curve" : p_text(law.p)) + ")";
+  return law.model + " (" + (law.same_curve ? "same curve" : p_value_text(law.p)) + ")";
 }
 
 std::string listed(const std::vector<std::string>& texts) {
@@ -212,7 +207,7 @@ std::string listed(const std::vector<std::string>& texts) {
 }  // namespace
 
 std::string difference_text(const HeldOutLaw& law) {
-  return value_with_error(law.difference, half_width(law.error, law.dof));
+  return value_with_error(law.difference, half_width(law.error, law.dof), 1);
 }
 
 std::string estimate_text(const Estimate& estimate) {

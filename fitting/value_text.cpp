@@ -57,6 +57,14 @@ std::string number_text(double value, int digits) {
   return in_format(value, std::chars_format::general, digits);
 }
 
+std::string probability_text(double p) {
+  return p < smallest_p ? "< " + number_text(smallest_p, 1) : number_text(p, 2);
+}
+
+std::string p_value_text(double p) {
+  return p < smallest_p ? "p " + probability_text(p) : "p = " + probability_text(p);
+}
+
 bool is_lopsided(double value, double low, double high, double least, double most) {
   if (!(low < value && value < high)) return false;
   const double half = (high - low) / 2;

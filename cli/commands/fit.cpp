@@ -179,7 +179,8 @@ FitSource measured_source(const FitArguments& arguments) {
             : "One curve: its errors contain the scatter between experiments only if sigma does.");
   }
   if (arguments.realizations) {
-    source.title += fmt::format(", {} realizations", source.curve.n_realizations);
+    const std::size_t n = std::max<std::size_t>(source.curve.n_realizations, 1);
+    source.title += fmt::format(", {} realization{}", n, n == 1 ? "" : "s");
   }
   return source;
 }
@@ -211,7 +212,7 @@ FitManner manner_of(const FitArguments& arguments) {
 Json source_json(const FittedCurve& fitted) {
   const auto& [source, outcomes, comparison] = fitted;
   Json object = {{"title", source.title}, {"fits", Json::array()}};
-  if (!source.point) object["notes"] = source.notes;
+  if (!source.point || !source.notes.empty()) object["notes"] = source.notes;
   if (source.point) {
     object["observable"] = source.observable;
     object["sweep_point"] = *source.point;

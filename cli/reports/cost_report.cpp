@@ -145,9 +145,9 @@ std::string growth_of_the_bias(const CostStudy& study, const CostOfObservable& c
     return text + finite_text("no change is seen; one of {:.2g} would have been with 80 %.\n",
                               growth.detectable);
   }
-  return text + finite_text("it {} with taps (p = {:.2g}, {} replicates); --taps takes more.\n",
+  return text + finite_text("it {} with taps ({}, {} replicates); --taps takes more.\n",
                             std::abs(now) > std::abs(previous) ? "still grows" : "shrinks",
-                            growth.tails, growth.change.pairs);
+                            plain_p_text(growth.tails), growth.change.pairs);
 }
 
 std::string other_windows_line(const CostOfObservable& cost) {

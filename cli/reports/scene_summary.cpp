@@ -58,8 +58,9 @@ double single_value(const Table& table, const std::string& name) {
 std::string slope_text(const Table& table) {
   const double slope = single_value(table, "slope");
   if (!std::isfinite(slope)) return "";
-  return "slope " + value_with_error(slope, half_width(single_value(table, "slope_error"),
-                                                       single_value(table, "slope_dof")));
+  const double half =
+      half_width(single_value(table, "slope_error"), single_value(table, "slope_dof"));
+  return "slope " + value_with_error(slope, half, 1);
 }
 
 /// Empty for a table without a result in words.

@@ -30,7 +30,9 @@ bool is_probability(const std::string& name) {
 /// Values without an error have four digits; whole numbers have all.
 std::string plain_number(double number, const std::string& name) {
   const bool whole = number == std::trunc(number) && std::abs(number) < 1e7;
-  return number_text(number, whole ? 7 : is_probability(name) ? 2 : 4);
+  if (is_probability(name) && !whole) return probability_text(number);
+  if (is_probability(name) && number == 0) return probability_text(number);
+  return number_text(number, whole ? 7 : 4);
 }
 
 std::string shown_cell(const Quantity& quantity, std::size_t index) {
@@ -43,11 +45,26 @@ std::string shown_cell(const Quantity& quantity, std::size_t index) {
   return std::get<std::vector<std::string>>(quantity.values).at(index);
 }
 
-/// The size of what a quantity measures: its largest value, and at least 1, the size of a sphere.
-double scale_of(const std::vector<double>& numbers) {
-  double scale = 1;
-  for (const double number : numbers) {
-    if (std::isfinite(number)) scale = std::max(scale, std::abs(number));
+double largest_of(const Quantity& quantity) {
+  const auto* numbers = std::get_if<std::vector<double>>(&quantity.values);
+  double largest = 0;
+  if (numbers == nullptr) return largest;
+  for (const double number : *numbers) {
+    if (std::isfinite(number)) largest = std::max(largest, std::abs(number));
+  }
+  return largest;
+}
+
+/// The size of what a quantity measures, beside which its rounding noise is 0: its largest number,
+/// that of the table's value of the same unit, and, unless it has no unit, that of every quantity
+/// of the unit.
+double scale_of(const Quantity& quantity, const Block& block) {
+  double scale = largest_of(quantity);
+  for (const Quantity* column : block.columns) {
+    if (column->units != quantity.units) continue;
+    const bool is_measured =
+        column->name == "value" || (quantity.units != "1" && !quantity.units.empty());
+    if (is_measured) scale = std::max(scale, largest_of(*column));
   }
   return scale;
 }
@@ -92,7 +109,7 @@ std::string shown(const Quantity& quantity, const Block& block, std::size_t inde
   const auto* numbers = std::get_if<std::vector<double>>(&quantity.values);
   const double width = number_at(companion(quantity, block, "_half_width"), index);
   if (!numbers || !(width > 0)) return shown_cell(quantity, index);
-  return value_with_error(numbers->at(index), width, scale_of(*numbers));
+  return value_with_error(numbers->at(index), width, scale_of(quantity, block));
 }
 
 /// No row has a number.

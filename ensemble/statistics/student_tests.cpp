@@ -8,6 +8,7 @@
 #include "ensemble/statistics/finite_text.hpp"
 #include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
+#include "fitting/value_text.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -81,7 +82,12 @@ double p_value(double value, const ErrorOf& error) {
 }
 
 std::string p_text(double p) {
-  return finite_text("p = {:.2g} at the {:g} % level", p, 100 * significance_level);
+  if (!std::isfinite(p)) return not_stated;
+  return finite_text("{} at the {:g} % level", p_value_text(p), 100 * significance_level);
+}
+
+std::string plain_p_text(double p) {
+  return std::isfinite(p) ? p_value_text(p) : not_stated;
 }
 
 std::vector<double> corrected_for_number(std::span<const double> p_values) {

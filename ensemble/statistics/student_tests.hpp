@@ -34,6 +34,9 @@ double p_value(double value, const ErrorOf& error);
 /// "p = 0.019 at the 5 % level": how every verdict names its test.
 std::string p_text(double p);
 
+/// "p = 0.019", or not_stated where it is not finite.
+std::string plain_p_text(double p);
+
 /// The p-values of several tests made together, so that the chance of any false alarm is the level:
 /// Holm 1979, Scand. J. Statist. 6, 65. NaN stays and does not count.
 std::vector<double> corrected_for_number(std::span<const double> p_values);

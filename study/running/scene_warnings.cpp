@@ -30,6 +30,23 @@ class Warnings {
       std::visit([this](const auto& tap) { look_at_tap(tap); }, stage.tap);
     }
   }
+  /// Realizations of a scene without random numbers.
+  void look_at_chance(const Plan& plan, std::uint64_t n_realizations) {
+    const bool given = std::holds_alternative<Crystal>(plan.start) ||
+                       std::holds_alternative<GivenPacking>(plan.start);
+    const bool random = !std::holds_alternative<DiscreteElement>(plan.engine) || !given ||
+                        has_drawn_sizes(plan) ||
+                        std::ranges::any_of(plan.protocol, [](const Stage& stage) {
+                          const auto* shake = std::get_if<Shake>(&stage.tap);
+                          return shake != nullptr && shake->lateral_radius > 0 && stage.count > 0;
+                        });
+    if (random || n_realizations < 2) return;
+    add(fmt::format(
+        "/realizations: nothing is random in this scene: discrete elements that start from a {} "
+        "make {} identical realizations, which count as one; 1 realization gives the same "
+        "results, a random start gives independent ones",
+        std::holds_alternative<Crystal>(plan.start) ? "crystal" : "file", n_realizations));
+  }
   void add(std::string text) {
     if (known_.insert(text).second && known_.size() <= most_warnings) {
       texts_.push_back(std::move(text));
@@ -100,7 +117,10 @@ class Warnings {
 
 std::vector<std::string> scene_warnings(const LoadedScene& loaded) {
   Warnings warnings;
-  for (const Plan& plan : loaded.plans) warnings.look_at(plan);
+  for (const Plan& plan : loaded.plans) {
+    warnings.look_at(plan);
+    warnings.look_at_chance(plan, loaded.scene.realizations);
+  }
   const auto disk = static_cast<double>(disk_estimate(study_of(loaded), Shard{}));
   if (disk > much_disk) {
     warnings.add(

@@ -109,6 +109,9 @@ void add_tables(const AnalysisContext& context, const char* kind,
     } catch (const BadInput& refusal) {
       table.notes = {{"refused", refusal.what()}};
     }
+    if (const std::string copies = series.copies(); !copies.empty()) {
+      table.notes.emplace_back("copies", copies);
+    }
     table.name = fmt::format("{}/{}/{}", point_name(point), kind, request.observable);
     const std::string& label = file.study().points[point].label;
     if (!label.empty()) table.notes.insert(table.notes.begin(), {"sweep_point", label});

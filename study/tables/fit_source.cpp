@@ -43,6 +43,9 @@ FitSource point_curve(const ResultsFile& file, std::uint32_t point, const std::s
     source.title += fmt::format(", {} realization{}", series.n_realizations(),
                                 series.n_realizations() == 1 ? "" : "s");
   }
+  if (const std::string copies = series.copies(); !copies.empty()) {
+    source.notes.push_back(copies + ".");
+  }
   return source;
 }
 

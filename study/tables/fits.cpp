@@ -329,6 +329,7 @@ std::vector<Table> fit_tables(const FittedCurve& fitted, const FitManner& manner
     table.notes.emplace_back("ended", describe(fit.reason));
     table.notes.emplace_back("realizations", fmt::to_string(source.curve.n_realizations));
     table.notes.emplace_back("remarks", lines(fit.remarks));
+    if (!source.notes.empty()) table.notes.emplace_back("source_notes", lines(source.notes));
     if (!fit.combinations.empty()) {
       std::vector<std::string> statements;
       for (const Estimate& found : fit.combinations) statements.push_back(found.statement);

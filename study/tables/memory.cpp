@@ -67,6 +67,7 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
   bool matched = true;
   std::vector<std::uint32_t> realizations;
   std::vector<std::string> left_out;
+  PointNotes copies;
   for (const std::uint32_t point : points) {
     const Switch current = switch_of(scenes, point);
     if (!switches.empty() && !(current.last.tap == switches.front().last.tap))
@@ -84,6 +85,7 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
                                          : "not all its realizations have reached the last stage"));
       continue;
     }
+    copies.add(file.study().points[point].label, here_all.copies());
     const ObservableSeries& all = series.emplace_back(here_all);
     last = std::min({last, current.last.count, all.n_rows() - 1 - current.tap});
     matched = matched && scenes.point_scene(point).streams == Streams::matched;
@@ -116,6 +118,7 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
   Table table = memory_table("", series.front().label(), control_before.name, control_before.units,
                              histories, memory_test(histories, std::move(windows)));
   if (!left_out.empty()) table.notes.emplace_back("left_out", joined(left_out, "; "));
+  copies.note("copies", table);
   table.notes.emplace_back("streams", matched ? "matched" : "independent");
   return table;
 }

@@ -10,6 +10,7 @@
 #include "config/json/suggestion.hpp"
 #include "ensemble/moments.hpp"
 #include "study/bad_input.hpp"
+#include "study/tables/repeated_series.hpp"
 
 namespace jostle::inline study {
 
@@ -61,6 +62,24 @@ ObservableSeries::ObservableSeries(const ResultsFile& file, std::uint32_t point,
     used_.push_back(summary.id.realization);
     reached_.push_back(summary.rows);
   }
+  leave_out_copies();
+}
+
+void ObservableSeries::leave_out_copies() {
+  const std::vector<std::uint32_t> distinct =
+      distinct_realizations(file_, point_, label_.name, used_, n_rows_);
+  n_copies_ = used_.size() - distinct.size();
+  if (n_copies_ == 0) return;
+  std::vector<std::uint64_t> reached;
+  for (std::size_t i = 0; i < used_.size(); ++i) {
+    if (std::ranges::binary_search(distinct, used_[i])) reached.push_back(reached_[i]);
+  }
+  used_ = distinct;
+  reached_ = std::move(reached);
+}
+
+std::string ObservableSeries::copies() const {
+  return copies_text(n_copies_, used_.size());
 }
 
 std::string ObservableSeries::held_back() const {

@@ -12,7 +12,8 @@ namespace jostle::inline study {
 
 /// One observable at one sweep point of a results file, read in pieces of at most 128 MB, whatever
 /// the number of taps and realizations. Realizations that failed or have no taps are left out, and
-/// taps that not all others have reached.
+/// taps that not all others have reached. Copies of a realization are left out, too: they are no
+/// independent measurements.
 class ObservableSeries {
  public:
   /// Throws BadInput naming the observables there are. `file` must outlive this.
@@ -29,6 +30,12 @@ class ObservableSeries {
   /// equally far; else empty.
   std::string held_back() const;
 
+  /// "3 of the 4 realizations repeat the series of another ..."; empty where no realization is a
+  /// copy. Two series are copies where all values agree to the bit and either eight of them differ
+  /// or all other columns of both realizations agree as well: short series of a discrete observable
+  /// also agree by chance.
+  std::string copies() const;
+
   /// Calls `take` with the values at these taps of one realization after another. Throws BadInput
   /// where one of them is not a number.
   void for_each(const TapRange& taps,
@@ -44,6 +51,7 @@ class ObservableSeries {
  private:
   void for_each_of(const std::vector<std::uint32_t>& realizations, const TapRange& taps,
                    const std::function<void(std::span<const double>)>& take) const;
+  void leave_out_copies();
 
   const ResultsFile& file_;
   std::uint32_t point_;
@@ -51,6 +59,7 @@ class ObservableSeries {
   std::vector<std::uint32_t> used_;     // realizations
   std::vector<std::uint64_t> reached_;  // rows of each
   std::uint64_t n_rows_ = 0;
+  std::size_t n_copies_ = 0;
 };
 
 }  // namespace jostle::inline study

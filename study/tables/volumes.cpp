@@ -90,7 +90,7 @@ double mean_over(const ObservableSeries& series, const StepTaps& taps) {
 
 /// Realizations that all sources have, ascending.
 std::vector<std::uint32_t> common_realizations(const ResultsFile& file, const Sources& sources,
-                                               const std::string& observable) {
+                                               const std::string& observable, PointNotes& copies) {
   std::vector<std::uint32_t> common;
   for (const Source& source : sources.all) {
     if (file.study().points[source.point].mixture)
@@ -100,6 +100,7 @@ std::vector<std::uint32_t> common_realizations(const ResultsFile& file, const So
     if (source.taps.last >= series.n_rows())
       throw BadInput(
           fmt::format("tap {} is not reached at sweep point {}", source.taps.last, source.point));
+    copies.add(file.study().points[source.point].label, series.copies());
     if (&source == &sources.all.front()) common = series.realizations();
     std::erase_if(common, [&](std::uint32_t r) {
       return !std::ranges::binary_search(series.realizations(), r);
@@ -131,7 +132,9 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
     throw BadInput("needs two strengths at least: a sweep of them, or a ramp in the protocol" +
                    of_chosen_points(file, points));
   const std::string& observable = request.observable;
-  const std::vector<std::uint32_t> realizations = common_realizations(file, sources, observable);
+  PointNotes copies;
+  const std::vector<std::uint32_t> realizations =
+      common_realizations(file, sources, observable, copies);
   const Source& first = sources.all.front();
   const ObservableSeries first_series(file, first.point, observable);
   const VolumeOf volume = volume_of(scenes.point_scene(first.point), observable,
@@ -166,8 +169,10 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
                states[i].volumes.count(volumes_of(values, volume), bins);
              });
   }
-  return volume_table("", first_series.label(), sources.control, sources.units, volume, states,
-                      bins);
+  Table table =
+      volume_table("", first_series.label(), sources.control, sources.units, volume, states, bins);
+  copies.note("copies", table);
+  return table;
 }
 
 /// The steps of the last branch of a protocol that goes through several strengths.

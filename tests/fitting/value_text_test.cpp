@@ -80,7 +80,7 @@ TEST_CASE("a value without an error is alone, and a missing limit is named") {
 }
 
 TEST_CASE("rounding noise is 0 beside the scale of what is measured") {
-  CHECK(value_with_error(-8.3e-17, 1.7e-16) == "0");
+  CHECK(value_with_error(-8.3e-17, 1.7e-16, 1) == "0");
   CHECK(value_with_error(3e-15, 2e-15, 100) == "0");
   CHECK(value_with_error(3e-15, 2e-12) == "0.0(2.0)e-12");
   CHECK(value_with_error(2.5e-16, 1e-17, 1e-10) == "2.50(10)e-16");
@@ -93,12 +93,30 @@ TEST_CASE("rounding noise is 0 beside the scale of what is measured") {
   CHECK(value_with_error(1e-9 / 3, 1e-27, 1e-9) == "3.33333e-10");
 }
 
+TEST_CASE("small numbers keep their errors, for every number is relative to itself") {
+  CHECK(value_with_error(6.14693e-13, 2.3e-15) == "6.147(23)e-13");
+  CHECK(value_with_error(6.1592e-16, 3.4e-18) == "6.159(34)e-16");
+  CHECK(value_with_error(1.29414e-12, 3.1e-14) == "1.294(31)e-12");
+  CHECK(value_with_error(7e-20, 0) == "7e-20");
+  CHECK(value_with_error(-3e-200, 1.5e-200) == "-3.0(1.5)e-200");
+}
+
+TEST_CASE("a p-value is never printed as 0") {
+  CHECK(p_value_text(0.0193) == "p = 0.019");
+  CHECK(p_value_text(4.7e-14) == "p = 4.7e-14");
+  CHECK(p_value_text(9.6e-80) == "p < 1e-16");
+  CHECK(p_value_text(0) == "p < 1e-16");
+  CHECK(p_value_text(1) == "p = 1");
+  CHECK(probability_text(0) == "< 1e-16");
+  CHECK(probability_text(nan) == "-");
+}
+
 TEST_CASE("over all decades and signs a text has the value and its error to two digits") {
   for (int power = -280; power <= 280; power += 7) {
     for (const double ratio : {1e-9, 3.3e-4, 0.0996, 0.5, 0.995, 1.0, 7.7, 99.6, 1e4}) {
       for (const double mantissa : {1.0, -1.04999, 3.14159, -9.96, 9.99999}) {
         const double value = mantissa * std::pow(10.0, power), error = std::abs(value) * ratio;
-        const std::string text = value_with_error(value, error, 1e-300);
+        const std::string text = value_with_error(value, error);
         CAPTURE(value, error, text);
         REQUIRE(text.find('(') != std::string::npos);
         const auto [read, read_error] = read_back(text);

@@ -130,10 +130,10 @@ std::string MemoryTest::statement(const std::string& observable, const std::stri
     const LagWindow& window = windows[found.window];
     return finite_text(
         "{} alone is not the state: after {} {} and {} responses differ by {:+.3g} +- {:.2g} "
-        "(68 %) at lags {} to {} (p = {:.2g}, {} tests together, {} realizations)",
+        "(68 %) at lags {} to {} ({}, {} tests together, {} realizations)",
         observable, control, name_of(found.first), name_of(found.second), found.value,
         student_half_width(found.error.error, static_cast<std::size_t>(found.error.dof) + 1),
-        window.first, window.last, found.corrected, differences.size(), realizations);
+        window.first, window.last, plain_p_text(found.corrected), differences.size(), realizations);
   }
   const AlignedDifference& unseen =
       *std::ranges::max_element(differences, {}, &AlignedDifference::detectable);
@@ -146,14 +146,14 @@ std::string MemoryTest::statement(const std::string& observable, const std::stri
   const double seen = unseen.detectable;
   if (!(seen <= response)) {
     return finite_text(
-        "cannot decide with {} realizations: p = {:.2g}, but only a difference of {:.2g} "
+        "cannot decide with {} realizations: {}, but only a difference of {:.2g} "
         "would have been found with 80 % at all lags, and the whole response is {:.2g}",
-        realizations, found.corrected, seen, response);
+        realizations, plain_p_text(found.corrected), seen, response);
   }
   return finite_text(
-      "no memory found: p = {:.2g} ({} tests together, {} realizations); a difference of {:.2g} "
+      "no memory found: {} ({} tests together, {} realizations); a difference of {:.2g} "
       "would have been found with 80 % at any lag, the whole response is {:.2g}",
-      found.corrected, differences.size(), realizations, seen, response);
+      plain_p_text(found.corrected), differences.size(), realizations, seen, response);
 }
 
 }  // namespace jostle::inline ensemble

@@ -131,12 +131,13 @@ void OrderingAnalysis::add_law(Table& table) const {
     return;
   }
   table.notes.emplace_back(
-      "law", finite_text("{} (p = {:.2g} of shape 1): shape {:.2g}, 95 % {:.2g} to {:.2g}",
-                         law.memoryless_p >= significance_level
-                             ? "memoryless, or not distinguishable from it"
-                         : law.shape > 1 ? "not memoryless, order gets likelier with time"
-                                         : "not memoryless, order gets rarer with time",
-                         law.memoryless_p, law.shape, law.shape_95.low, law.shape_95.high));
+      "law",
+      finite_text("{} ({} of shape 1): shape {:.2g}, 95 % {:.2g} to {:.2g}",
+                  law.memoryless_p >= significance_level
+                      ? "memoryless, or not distinguishable from it"
+                  : law.shape > 1 ? "not memoryless, order gets likelier with time"
+                                  : "not memoryless, order gets rarer with time",
+                  plain_p_text(law.memoryless_p), law.shape, law.shape_95.low, law.shape_95.high));
 }
 
 Table OrderingAnalysis::table() const {

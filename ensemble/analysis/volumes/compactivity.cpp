@@ -247,8 +247,9 @@ CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps
   const std::string tests =
       std::isnan(verdict.difference_p) || std::isnan(verdict.curvature_p)
           ? fmt::format("no test, for errors are not known, {} realizations", realizations)
-          : finite_text("{} of their difference, {:.2g} of a bend of ln P_1/P_2, {} realizations",
-                        p_text(verdict.difference_p), verdict.curvature_p, realizations);
+          : finite_text("{} of their difference, {} of a bend of ln P_1/P_2, {} realizations",
+                        p_text(verdict.difference_p), plain_p_text(verdict.curvature_p),
+                        realizations);
   if (overlapping == 0) {
     verdict.statement = "cannot decide: no two neighbours' histograms overlap; take smaller steps";
   } else if (realizations < 2) {

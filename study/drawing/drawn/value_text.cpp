@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "fitting/value_text.hpp"
+
 namespace jostle::inline study {
 namespace {
 
@@ -83,6 +85,15 @@ std::string typeset_with_error(double value, double error) {
   if (decimals == 0) return with_minus(fixed(value, 0)) + "(" + in_units + ")";
   const std::string shown = error >= 1 ? fixed(error, decimals) : in_units;
   return with_minus(fixed(value, decimals)) + "(" + shown + ")";
+}
+
+std::string typeset_probability(double p) {
+  if (!(p < smallest_p)) return typeset_number(p, 2);
+  return "< 10" + superscript(exponent_of(smallest_p, 1));
+}
+
+std::string typeset_p(double p) {
+  return (p < smallest_p ? "p " : "p = ") + typeset_probability(p);
 }
 
 std::string typeset_count(double n) {

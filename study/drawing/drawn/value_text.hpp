@@ -16,6 +16,12 @@ std::string typeset_number(double value, int digits = 4);
 /// with five digits, where the error is not finite or not above zero.
 std::string typeset_with_error(double value, double error);
 
+/// A p-value with two digits, "0.019"; "< 10⁻¹⁶" below the smallest that is distinguished.
+std::string typeset_probability(double p);
+
+/// "p = 0.019" or "p < 10⁻¹⁶".
+std::string typeset_p(double p);
+
 /// "12 345", from 1e6 on "1.23×10⁶".
 std::string typeset_count(double n);
 

@@ -12,6 +12,7 @@
 #include "results/disk/printable.hpp"
 #include "study/bad_input.hpp"
 #include "study/number_text.hpp"
+#include "study/tables/repeated_series.hpp"
 
 namespace jostle::inline study {
 
@@ -226,7 +227,12 @@ Curve mean_of(const std::string& path, Rows rows, const ColumnRoles& roles, Gaps
         path, printable(fmt::format("{}", fmt::join(names_of(roles, groups[0]), ", ")), 100),
         printable(fmt::format("{}", fmt::join(names_of(roles, groups[1]), ", ")), 100)));
   }
-  return mean_of_present(std::move(rows.t), std::move(rows.values), kept.size());
+  const std::vector<std::size_t> distinct = distinct_columns(rows.values, kept.size());
+  if (distinct.size() < kept.size()) {
+    notes.push_back(copies_text(kept.size() - distinct.size(), distinct.size()) + ".");
+    keep_realizations(distinct, kept.size(), rows);
+  }
+  return mean_of_present(std::move(rows.t), std::move(rows.values), distinct.size());
 }
 
 }  // namespace

@@ -37,8 +37,12 @@ std::vector<double> half_widths(const EnsembleSeries& series) {
 }
 
 std::string mean_text(const EnsembleSeries& series, std::size_t tap) {
-  return value_with_error(
-      series.mean[tap], half_width(series.error[tap], static_cast<double>(series.count[tap]) - 1));
+  double scale = 0;
+  for (const double mean : series.mean) {
+    if (std::isfinite(mean)) scale = std::max(scale, std::abs(mean));
+  }
+  const double half = half_width(series.error[tap], static_cast<double>(series.count[tap]) - 1);
+  return value_with_error(series.mean[tap], half, scale);
 }
 
 Table with_half_widths(Table table) {

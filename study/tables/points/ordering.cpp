@@ -73,6 +73,7 @@ Table ordering_over_points(const ResultsFile& file, std::span<const std::uint32_
   }
   const SharedTaps shared = shared_taps(reached);
   std::vector<std::string> left_out;
+  PointNotes copies;
   try {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::uint32_t number = points[i];
@@ -82,6 +83,7 @@ Table ordering_over_points(const ResultsFile& file, std::span<const std::uint32_
         continue;
       }
       const ObservableSeries series(file, number, observable);
+      copies.add(label, series.copies());
       OrderingPoint point{.label = label, .times = ordering_of(series, settings).times(n)};
       set_last_values(ObservableSeries(file, number, value.observable), settings, shared.rows[i], n,
                       point, value);
@@ -91,6 +93,7 @@ Table ordering_over_points(const ResultsFile& file, std::span<const std::uint32_
       throw BadInput("needs two sweep points at least; left out: " + joined(left_out, "; "));
     Table table = ordering_comparison(observable, settings, value, compared, streams);
     if (!left_out.empty()) table.notes.emplace_back("left_out", joined(left_out, "; "));
+    copies.note("copies", table);
     return table;
   } catch (const BadInput& refusal) {
     return {.name = "ordering/" + observable, .notes = {{"refused", refusal.what()}}};

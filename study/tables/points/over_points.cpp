@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "config/json/json_text.hpp"
 #include "study/bad_input.hpp"
 
 namespace jostle::inline study {
@@ -41,6 +42,16 @@ SharedTaps shared_taps(std::span<const ReachedTaps> points) {
   for (std::size_t i = 0; i < points.size(); ++i)
     found.rows.push_back(found.reasons[i].empty() ? shared.at(points[i].planned) : 0);
   return found;
+}
+
+void PointNotes::add(const std::string& label, const std::string& text) {
+  if (text.empty()) return;
+  std::string line = label.empty() ? text : label + ": " + text;
+  if (std::ranges::find(texts_, line) == texts_.end()) texts_.push_back(std::move(line));
+}
+
+void PointNotes::note(const std::string& name, Table& table) const {
+  if (!texts_.empty()) table.notes.emplace_back(name, joined(texts_, "; "));
 }
 
 void require_taps(const ResultsFile& file, std::uint32_t point, std::size_t n_realizations) {

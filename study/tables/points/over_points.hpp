@@ -32,6 +32,18 @@ struct SharedTaps {
 };
 SharedTaps shared_taps(std::span<const ReachedTaps> points);
 
+/// Sentences about single sweep points, for one note of a table.
+class PointNotes {
+ public:
+  /// An empty text adds nothing.
+  void add(const std::string& label, const std::string& text);
+  /// Appends "LABEL: TEXT; LABEL: TEXT", each once; nothing without a text.
+  void note(const std::string& name, Table& table) const;
+
+ private:
+  std::vector<std::string> texts_;
+};
+
 /// Throws BadInput where no realization of the point has taps: all failed, or none is begun.
 void require_taps(const ResultsFile& file, std::uint32_t point, std::size_t n_realizations);
 

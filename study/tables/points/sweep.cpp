@@ -44,6 +44,7 @@ struct Member {
   std::string taps;                // whose mean the value is: "151 to 200"
   std::optional<Verdict> steady;   // verdict on these taps; none for too few
   std::string no_value;            // why it has none, where that is known
+  std::string copies;              // text of ObservableSeries::copies()
   bool error_is_no_basis = false;  // a fit's, of too few realizations
 };
 
@@ -267,6 +268,11 @@ Table curve_table(std::string name, std::span<const Member> members,
   Table table = sweep_table(std::move(name), first.swept, first.label, curve, point);
   add_notes(members, table);
   add_steadiness(members, table);
+  PointNotes copies;
+  for (const Member& member : members) {
+    copies.add(member.file->study().points[member.point].label, member.copies);
+  }
+  copies.note("copies", table);
   return table;
 }
 
@@ -312,6 +318,7 @@ std::vector<Member> members_of(std::span<SweptFile> files,
       member.point = point;
       const ObservableSeries series(*file, point, observable);
       member.label = series.label();
+      member.copies = series.copies();
       const StudyPoint& studied = file->study().points[point];
       member.reached = {studied.taps, series.n_rows()};
       set_x(member, studied, scenes, point, settings.against);

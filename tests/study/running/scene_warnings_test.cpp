@@ -49,6 +49,33 @@ TEST_CASE("Strengths that look like other units are warned of, each once") {
   CHECK_THAT(warnings_of_taps({{Vibration{8, 10, 1}, 1}}).at(0), Contains("vibration"));
 }
 
+TEST_CASE("Scenes without random numbers are warned of") {
+  Plan plan;
+  plan.engine = DiscreteElement{};
+  plan.start = Crystal{};
+  plan.protocol = {{HalfSine{0.4413, 7.5}, 10}};
+  const auto warnings = [&](std::uint32_t realizations) {
+    LoadedScene loaded = scene_of(plan);
+    loaded.scene.realizations = realizations;
+    return scene_warnings(loaded);
+  };
+  REQUIRE(warnings(4).size() == 1);
+  CHECK_THAT(warnings(4)[0], StartsWith("/realizations: nothing is random in this scene") &&
+                                 Contains("from a crystal make 4 identical realizations"));
+  CHECK(warnings(1).empty());
+  plan.start = GivenPacking{std::make_shared<const std::vector<Vec3>>(20, Vec3{1, 1, 1})};
+  CHECK_THAT(warnings(2).at(0), Contains("from a file make 2 identical realizations"));
+  plan.protocol = {{Shake{.lambda = 0.1, .lateral_radius = 0.05}, 10}};
+  CHECK(warnings(4).empty());
+  plan.protocol = {{Shake{.lambda = 0.1, .lateral_radius = 0}, 10}};
+  CHECK(warnings(4).size() == 1);
+  plan.start = RandomSettle{};
+  CHECK(warnings(4).empty());
+  plan.start = Crystal{};
+  plan.engine = MonteCarlo{};
+  CHECK(warnings(4).empty());
+}
+
 TEST_CASE("Angles in degrees, boulders and rests beyond the cap are warned of") {
   Plan plan;
   monte_carlo(plan).relax.move = PolarMove{.theta0 = 45};

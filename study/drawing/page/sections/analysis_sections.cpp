@@ -103,8 +103,7 @@ Json slopes_table(const DrawnFile& file, const std::vector<TableView>& made) {
   for (const TableView& table : made) {
     rows.push_back({words(table.path().back()), point_label(file, table),
                     value_cell(table, "slope"), value_cell(table, "ar1_slope"),
-                    number_cell(table, "ar1_slope_p", 0, 2), table.note("verdict"),
-                    table.note("drift")});
+                    p_cell(table, "ar1_slope_p", 0), table.note("verdict"), table.note("drift")});
   }
   return estimates_block("Log-log slopes in the band",
                          {"observable", "sweep point", "slope",
@@ -123,7 +122,7 @@ Json areas_table(const TableView& table) {
     rows.push_back({branch("earlier_branch", i) + " and " + branch("later_branch", i),
                     number_cell(table, "lowest_strength", i) + " to " +
                         number_cell(table, "highest_strength", i),
-                    value_cell(table, "area", i), number_cell(table, "area_p_corrected", i, 2),
+                    value_cell(table, "area", i), p_cell(table, "area_p_corrected", i),
                     text_at(table, "area_verdict", i)});
   }
   return estimates_block("Area between branches, later minus earlier",
@@ -135,7 +134,7 @@ Json differences_table(const TableView& table) {
   for (std::size_t i = 0; i < table.axis("pair").size(); ++i) {
     rows.push_back({number_cell(table, "from", i), number_cell(table, "to", i),
                     value_cell(table, "difference", i),
-                    number_cell(table, "difference_p_corrected", i, 2)});
+                    p_cell(table, "difference_p_corrected", i)});
   }
   return estimates_block("Differences between points", {"from", "to", "difference", "p, corrected"},
                          rows);
@@ -225,10 +224,10 @@ Json sweep_section(const PageContent& content) {
     blocks.add(statement_block("Maximum", table.note("maximum")));
     blocks.add(statement_block("Minimum", table.note("minimum")));
     if (std::isfinite(table.value("line_slope"))) {
-      blocks.add(
-          statement_block("Straight line", "slope " + value_cell(table, "line_slope") +
-                                               "; p of the hypothesis that the points lie on it: " +
-                                               number_cell(table, "line_p", 0, 2)));
+      blocks.add(statement_block(
+          "Straight line",
+          "slope " + value_cell(table, "line_slope") +
+              "; p of the hypothesis that the points lie on it: " + p_cell(table, "line_p", 0)));
     }
     blocks.add(differences_table(table));
   }

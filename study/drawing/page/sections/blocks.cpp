@@ -169,6 +169,10 @@ std::string number_cell(const TableView& table, const std::string& quantity, std
   return std::isfinite(value) ? with_unit(text, table.units(quantity)) : text;
 }
 
+std::string p_cell(const TableView& table, const std::string& quantity, std::size_t i) {
+  return typeset_probability(table.value(quantity, i));
+}
+
 std::string with_unit(const std::string& number, const std::string& units) {
   const std::string bracketed = unit_text(units);  // " (diameter)"
   if (bracketed.empty()) return number;

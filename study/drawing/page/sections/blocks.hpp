@@ -102,6 +102,8 @@ std::string value_cell(const TableView& table, const std::string& quantity, std:
                        UnitPlace unit = UnitPlace::cell);
 std::string number_cell(const TableView& table, const std::string& quantity, std::size_t i = 0,
                         int digits = 4);
+/// A p-value, "0.019" or "< 10⁻¹⁶".
+std::string p_cell(const TableView& table, const std::string& quantity, std::size_t i = 0);
 /// "4.18(2) diameter": a text that is a number, with a unit that is not 1.
 std::string with_unit(const std::string& number, const std::string& units);
 

@@ -105,7 +105,7 @@ Json comparison(const std::vector<TableView>& laws) {
                     number_cell(law, "r2", 0, 5),
                     is_held_out ? number_cell(law, "held_out_error", 0, 5) : "–",
                     is_held_out ? value_cell(law, "held_out_difference") : "–",
-                    is_held_out ? number_cell(law, "held_out_p", 0, 2) : "–",
+                    is_held_out ? p_cell(law, "held_out_p", 0) : "–",
                     number_cell(law, "points", 0, 6), number_cell(law, "effective_points", 0, 3)});
   }
   return estimates_block(

@@ -67,8 +67,8 @@ Json histories_table(const TableView& table) {
                 number_cell(table, "first_" + control, i)};
     for (std::size_t j = 0; j < lags.size(); ++j) {
       const std::size_t index = i * lags.size() + j;
-      row.emplace_back(value_cell(table, "difference", index) +
-                       ", p = " + number_cell(table, "difference_p_corrected", index, 2));
+      row.emplace_back(value_cell(table, "difference", index) + ", " +
+                       typeset_p(table.value("difference_p_corrected", index)));
     }
     rows.push_back(row);
   }

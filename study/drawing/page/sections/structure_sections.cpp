@@ -82,8 +82,8 @@ Json differences_table(const DrawnFile& file, const TableView& table, const Part
          Json{{"print", page_text(label("to_point", i) + " against " + label("from_point", i))}},
          in_units(number_cell(table, "to_mean", i, 5)),
          in_units(number_cell(table, "from_mean", i, 5)),
-         in_units(value_cell(table, "difference", i)), number_cell(table, "p", i, 2),
-         number_cell(table, "p_corrected", i, 2)});
+         in_units(value_cell(table, "difference", i)), p_cell(table, "p", i),
+         p_cell(table, "p_corrected", i)});
   }
   const Json lines = estimates_block(
       fmt::format("Differences between sweep points after {} taps, {}", table.note("tap"),
