@@ -13,6 +13,7 @@ namespace jostle::inline ensemble {
 namespace {
 
 constexpr double window_in_times = 6;
+constexpr double lowest_rho = -0.9995;  // rho of an alternating AR(1)
 
 // Sums of x[i] x[i + lag] for lags 0 .. n / 2, of a series about its mean or its line.
 std::vector<double> lagged_products(std::span<const double> series, Removed removed) {
@@ -38,6 +39,31 @@ double wolff_error(double time, std::size_t window, std::size_t n_values) {
   return 2 * time * std::sqrt(excess / static_cast<double>(n_values));
 }
 
+double rho_of(double time) {
+  return (2 * time - 1) / (2 * time + 1);
+}
+
+double time_of(double rho) {
+  return 0.5 * (1 + rho) / (1 - rho);
+}
+
+/// Standard error of the time of AR(1) whose rho < 0 is the correlation at lag 1 (Bartlett 1946).
+double alternating_error(double rho, std::size_t n_values) {
+  return std::sqrt((1 + rho) / static_cast<double>(n_values)) / std::pow(1 - rho, 1.5);
+}
+
+/// The rho < 0 of AR(1) whose correlations over lags 1 .. last have this negative sum. A window of
+/// several lags ends so late only for rho > -1/2, where the sum grows with rho.
+double alternating_rho(double sum, std::size_t last) {
+  double low = last == 1 ? lowest_rho : -0.5, high = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    const double found = middle * (1 - std::pow(middle, static_cast<double>(last))) / (1 - middle);
+    (found < sum ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 /// Expectations of covariances of AR(1) of variance 1 and this autocorrelation time, about the
 /// means of series of n taps.
 struct ExpectedSum {
@@ -46,7 +72,7 @@ struct ExpectedSum {
   std::vector<double> lowered;  // [last + 1], by which the covariances are too small
 
   ExpectedSum(double autocorrelation_time, std::size_t n, std::size_t last) {
-    const double rho = (2 * autocorrelation_time - 1) / (2 * autocorrelation_time + 1);
+    const double rho = rho_of(autocorrelation_time);
     // With the mean of each tap's covariances with all taps, and the sums of these from the first.
     std::vector<double> powers(n), sums(n + 1, 0.0), shared(n + 1, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
@@ -94,7 +120,8 @@ AutocorrelationTime Autocorrelation::to_first_order(const Sum& sum) const {
   // Subtracting the mean of a series lowers every covariance by the variance of that mean, and its
   // slope by as much again at lags that are short against the series.
   const double times = removed_ == Removed::line ? 2 : 1;
-  const double lowered = times * 2 * sum.time * covariance(0) / static_cast<double>(n_);
+  const double memory = sum.last == 1 ? time_of(std::fmax(lowest_rho, sum.time - 0.5)) : sum.time;
+  const double lowered = times * 2 * memory * covariance(0) / static_cast<double>(n_);
   result.variance = covariance(0) + lowered;
   for (std::size_t t = 1; t <= sum.last; ++t) {
     const double correlation = (covariance(t) + lowered) / result.variance;
@@ -124,8 +151,9 @@ AutocorrelationTime Autocorrelation::about_means(const Sum& sum) const {
   // maximum.
   constexpr double step = 1.1;
   const auto length = static_cast<double>(n_);
-  double low = std::fmax(0.05, 0.9 * first_order);
-  while (low > 0.05 && expected(low).time > sum.time) low /= step;
+  const double lowest = sum.last == 1 ? time_of(lowest_rho) : 0.05;
+  double low = std::fmax(lowest, 0.9 * first_order);
+  while (low > lowest && expected(low).time > sum.time) low /= step;
   double high = low;
   while (expected(high).time < sum.time) {
     low = high;
@@ -143,6 +171,9 @@ AutocorrelationTime Autocorrelation::about_means(const Sum& sum) const {
   // Means take a part of the sum's scatter with them: about as much of its square as of its gain.
   const double scatter = wolff_error(result.time, sum.last, realizations_ * n_);
   result.error = scatter / std::sqrt(gain);
+  if (sum.last == 1 && result.time < 0.5) {
+    result.error = alternating_error(rho_of(result.time), realizations_ * n_);
+  }
   if (length < fewest_times * (result.time + scatter / gain)) return lower_bound(sum);
   result.variance = covariance(0) / found.variance;
   result.variance_error = result.variance * result.error *
@@ -151,6 +182,17 @@ AutocorrelationTime Autocorrelation::about_means(const Sum& sum) const {
     const double correlation = covariance(t) / result.variance + found.lowered[t];
     result.squares += correlation * correlation;
   }
+  return result;
+}
+
+AutocorrelationTime Autocorrelation::about_lines(const Sum& sum) const {
+  AutocorrelationTime result = to_first_order(sum);
+  if (!(result.time < 0.5)) return result;
+  // The window ends before the correlations of a series that alternates have cancelled.
+  const double rho = alternating_rho(result.time - 0.5, sum.last);
+  result.time = time_of(rho);
+  result.error = sum.last == 1 ? alternating_error(rho, realizations_ * n_)
+                               : wolff_error(result.time, sum.last, realizations_ * n_);
   return result;
 }
 
@@ -163,7 +205,7 @@ AutocorrelationTime Autocorrelation::result() const {
   }
   sum.has_ended = sum.last < products_.size();
   if (!sum.has_ended) sum.last = products_.size() - 1;
-  if (removed_ == Removed::line) return to_first_order(sum);
+  if (removed_ == Removed::line) return about_lines(sum);
   return sum.has_ended ? about_means(sum) : lower_bound(sum);
 }
 

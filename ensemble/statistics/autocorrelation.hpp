@@ -34,7 +34,9 @@ enum class Removed { mean, line };
 /// Pooled over series of one length, at least 4, each about its own mean or line. The sum ends
 /// at the first lag of at least 6 tau (Madras and Sokal 1988, doi:10.1007/BF01022990), up to
 /// half a series; the error is that of Wolff 2004, doi:10.1016/S0010-4655(03)00467-3, eq. 42.
-/// The bias by subtracting each series' own line is put right to first order (eq. 32). The bias
+/// The bias by subtracting each series' own line is put right to first order (eq. 32); a time below
+/// 1/2 is that of the AR(1) process of rho < 0 with the sum that was found, for the sum ends before
+/// alternating correlations cancel. The bias
 /// by subtracting the mean is removed entirely for AR(1): the time is that of the AR(1) process
 /// whose covariances, about the means of series of this length, have the sum that was found.
 /// Where no process has it, or where a series has fewer than ten times the time plus its
@@ -55,6 +57,7 @@ class Autocorrelation {
   AutocorrelationTime to_first_order(const Sum& sum) const;
   AutocorrelationTime lower_bound(const Sum& sum) const;
   AutocorrelationTime about_means(const Sum& sum) const;
+  AutocorrelationTime about_lines(const Sum& sum) const;
 
   Removed removed_;
   std::size_t n_ = 0, realizations_ = 0;

@@ -59,8 +59,10 @@ struct AutoregressiveSlope {
 
 AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogSlope& measured,
                                    const AutocorrelationTime& memory, const Band& band) {
+  // Below 1/2, rho is negative and the spectrum rises with the frequency.
+  constexpr double shortest = 1e-4;
   const auto value_at = [&](double time) {
-    return average.autoregressive_slope(std::max(time, 0.5), band);
+    return average.autoregressive_slope(std::max(time, shortest), band);
   };
   AutoregressiveSlope found{.slope = value_at(memory.time)};
   // A short series' memory comes out too short, and its lowest lines too low: by so much slopes of

@@ -46,6 +46,24 @@ SteadyState steady_state(const std::vector<std::vector<double>>& ensemble) {
 
 }  // namespace
 
+TEST_CASE("Series that alternate have the time of AR(1), about means as about lines") {
+  for (const double negative : {-0.3, -0.5, -0.7, -0.9, -0.98}) {
+    Autocorrelation about_means(Removed::mean), about_lines(Removed::line);
+    for (std::uint64_t r = 0; r < 6; ++r) {
+      const auto series = synthetic::autoregressive(negative, 1000, 20261127, r);
+      about_means.add(series);
+      about_lines.add(series);
+    }
+    const double time = 0.5 * (1 + negative) / (1 - negative);
+    const AutocorrelationTime by_mean = about_means.result(), by_line = about_lines.result();
+    CAPTURE(negative, time, by_mean.time, by_mean.error, by_line.time, by_line.error);
+    CHECK(std::abs(by_mean.time - time) < 3 * by_mean.error);
+    CHECK(std::abs(by_line.time - time) < 3 * by_line.error);
+    CHECK(std::abs(by_line.time - by_mean.time) < 0.2 * by_mean.error);
+    CHECK(by_mean.error < 0.15 * time);
+  }
+}
+
 TEST_CASE("A constant series is steady, in words without a number") {
   for (const std::size_t realizations : {1, 2, 5}) {
     const SteadyState state = steady_state({realizations, std::vector<double>(130, 0.1)});

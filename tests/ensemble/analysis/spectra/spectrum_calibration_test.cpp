@@ -35,7 +35,7 @@ void check(const std::vector<std::size_t>& all_realizations, std::size_t ensembl
   fmt::print("{:>3} {:>5} {:>5} | {:>7} {:>9} | {:>13} {:>11}\n", "M", "taps", "rho", "slope",
              "AR(1)'s", "called other", "1/f, other");
   for (const std::size_t realizations : all_realizations) {
-    for (const double rho : {0.5, 0.9, 0.99}) {
+    for (const double rho : {-0.9, -0.5, 0.5, 0.9, 0.99}) {
       Moments slopes, expected;
       double second = 0, found = 0;
       for (std::size_t e = 0; e < ensembles; ++e) {
