@@ -29,7 +29,10 @@ FitRange read_range(const std::string& option, const std::string& text) {
   const FitRange range{read_end(first, -infinite, option, text),
                        read_end(last, infinite, option, text)};
   if (range.first <= range.last) return range;
-  throw BadInput(fmt::format("{} {}: FIRST:LAST, and no number is so", option, text));
+  throw BadInput(
+      fmt::format("{} {}: {} is larger than {}, and the first number of a range may not "
+                  "exceed the last; write {}:{}",
+                  option, text, first, last, last, first));
 }
 
 std::vector<NamedNumber> named_numbers(const std::string& option,

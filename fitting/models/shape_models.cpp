@@ -46,7 +46,10 @@ DensityProfile::DensityProfile()
                      .meaning = "loss of solids fraction per height",
                      .unit = ParameterUnit::value_per_time,
                      .linear = true},
-                    {.name = "beta", .meaning = "sharpness of the free surface", .lower = 0},
+                    {.name = "beta",
+                     .meaning = "sharpness of the free surface",
+                     .unit = ParameterUnit::per_time,
+                     .lower = 0},
                     {.name = "z_star",
                      .meaning = "height of the free surface",
                      .unit = ParameterUnit::time}}) {}

@@ -19,9 +19,22 @@ namespace {
 constexpr std::array t_names = {"t", "tap", "taps", "time"};
 constexpr std::array x_names = {"x", "mean", "value"};
 constexpr std::array sigma_names = {"sigma", "error", "se", "standard_error"};
+// Words of names that speak of an error, a count, a weight or a mean.
+constexpr std::array statistic_words = {
+    "std",       "stdev", "stddev", "stderr",  "stderror", "sd",       "sem",
+    "se",        "sigma", "err",    "error",   "errors",   "variance", "uncertainty",
+    "deviation", "rms",   "count",  "counts",  "nobs",     "weight",   "weights",
+    "mean",      "means", "avg",    "average", "median",   "averages"};
+constexpr std::array statistic_names = {"n", "w", "var", "number", "value"};  // whole names
 constexpr const char* allowed =
-    "t, tap or time; X, mean or value; sigma, error, se or standard_error (where realizations are "
+    "t, tap, taps or time; X, mean or value; sigma, error, se or standard_error (where "
+    "realizations are "
     "asked for, t and a column of any name each)";
+
+template <class Names>
+bool is_in(const Names& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
 
 /// Lower case, without a unit in brackets behind it: "Time [s]" is "time".
 std::string plain_name(const std::string& name) {
@@ -33,6 +46,31 @@ std::string plain_name(const std::string& name) {
   return plain;
 }
 
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/// Words of a name in lower case: of "SIGMA_X", "r0_error", "std.dev" and "meanPhi". Digits end a
+/// word.
+std::vector<std::string> name_words(const std::string& name) {
+  std::vector<std::string> words = {""};
+  bool was_lower = false;
+  for (const char c : name) {
+    const bool is_upper = c >= 'A' && c <= 'Z';
+    if (!is_letter(c) || (is_upper && was_lower)) words.emplace_back();
+    if (is_letter(c)) words.back() += is_upper ? static_cast<char>(c - 'A' + 'a') : c;
+    was_lower = is_letter(c) && !is_upper;
+  }
+  return words;
+}
+
+/// True if a column of this name holds an error, a count, a weight or a mean.
+bool is_statistic(const std::string& name) {
+  return is_in(statistic_names, plain_name(name)) ||
+         std::ranges::any_of(name_words(name),
+                             [](const std::string& word) { return is_in(statistic_words, word); });
+}
+
 /// "s" of "Time [s]"; empty without brackets, and for a text that is too long for a unit.
 std::string unit_of(const std::string& name) {
   const std::size_t open = name.find_first_of("([");
@@ -41,11 +79,6 @@ std::string unit_of(const std::string& name) {
   if (close == std::string::npos) return "";
   const std::string unit = printable(name.substr(open + 1, close - open - 1), 40);
   return unit.size() > 12 ? "" : unit;
-}
-
-template <class Names>
-bool is_in(const Names& names, const std::string& name) {
-  return std::ranges::find(names, name) != names.end();
 }
 
 /// pandas writes the index of a frame as a first column without a name, and reads that as
@@ -121,6 +154,42 @@ void note_laws(const NamedColumns& found, ColumnRoles& roles) {
   }
 }
 
+/// Units that denote a plain number are none.
+std::string sigma_unit_of(const std::string& name) {
+  const std::string unit = unit_of(name);
+  return unit == "1" || unit == "-" ? "" : unit;
+}
+
+void require_unit_of_sigma(const std::string& path, const std::vector<std::string>& names,
+                           std::size_t x, std::size_t sigma) {
+  const std::string unit = sigma_unit_of(names[sigma]), unit_of_x = sigma_unit_of(names[x]);
+  if (unit.empty() || unit == unit_of_x) return;
+  refuse(
+      path, names,
+      fmt::format("{} has the unit {} and {} {}: an error has the unit of its value; convert the "
+                  "column",
+                  printable(names[sigma], 60), unit, printable(names[x], 60),
+                  unit_of_x.empty() ? "none" : "has " + unit_of_x));
+}
+
+/// Brackets with a number, or behind one name for all, are labels: "run (1)", "run (b)".
+void require_one_unit(const std::string& path, const std::vector<std::string>& names,
+                      const std::vector<std::size_t>& columns) {
+  std::set<std::string> plain, units;
+  for (const std::size_t column : columns) {
+    const std::string unit = unit_of(names[column]);
+    const bool is_label = std::ranges::all_of(unit, [](char c) { return c >= '0' && c <= '9'; });
+    plain.insert(plain_name(names[column]));
+    if (unit.empty() || !is_label) units.insert(unit.empty() ? "none" : unit);
+  }
+  if (units.size() < 2 || plain.size() < 2) return;
+  refuse(
+      path, names,
+      fmt::format("the realizations have several units ({}), and their mean has one: convert the "
+                  "columns",
+                  printable(joined({units.begin(), units.end()}, ", "), 100)));
+}
+
 void take_errors(const std::string& path, const NamedColumns& found, ColumnRoles& roles) {
   const auto& names = roles.names;
   if (!found.unused.empty()) {
@@ -131,7 +200,10 @@ void take_errors(const std::string& path, const NamedColumns& found, ColumnRoles
                        unknown.size() == 1 ? "" : "s", list_of_names(unknown)));
   }
   roles.x = {only_column(path, names, found.x, "X")};
-  if (!found.sigma.empty()) roles.sigma = only_column(path, names, found.sigma, "sigma");
+  if (!found.sigma.empty()) {
+    roles.sigma = only_column(path, names, found.sigma, "sigma");
+    require_unit_of_sigma(path, names, roles.x.front(), *roles.sigma);
+  }
   note_laws(found, roles);
 }
 
@@ -140,14 +212,30 @@ void take_realizations(const std::string& path, const NamedColumns& found, Colum
   std::vector<std::size_t> columns = found.unused;
   note_laws(found, roles);
   // A heading t, X, X, ... names every realization X.
-  const bool all_x = columns.empty() && found.sigma.empty() && found.x.size() >= 2;
+  const bool all_x = columns.empty() && found.sigma.empty() && found.x.size() >= 2 &&
+                     std::ranges::all_of(found.x, [&](std::size_t column) {
+                       return plain_name(names[column]) == "x";
+                     });
   if (all_x) columns = found.x;
   std::ranges::sort(columns);
   if (!all_x && (!found.x.empty() || !found.sigma.empty())) {
-    const std::size_t column = found.x.empty() ? found.sigma.front() : found.x.front();
+    columns.insert(columns.end(), found.x.begin(), found.x.end());
+    columns.insert(columns.end(), found.sigma.begin(), found.sigma.end());
+  }
+  const auto statistic = std::ranges::find_if(
+      columns, [&](std::size_t column) { return is_statistic(names[column]); });
+  if (statistic != columns.end()) {
     refuse(path, names,
-           fmt::format("{} names a mean or its error, not a realization",
-                       printable(names[column], 60)));
+           fmt::format("{} names an error, a count, a weight or a mean, not a realization: remove "
+                       "the column",
+                       printable(names[*statistic], 60)));
+  }
+  const auto x = std::ranges::find_if(
+      columns, [&](std::size_t column) { return plain_name(names[column]) == "x"; });
+  if (!all_x && x != columns.end()) {
+    refuse(path, names,
+           fmt::format("{} names the only curve, not one of several: rename the column",
+                       printable(names[*x], 60)));
   }
   std::set<std::string> seen;
   for (const std::size_t column : columns) {
@@ -158,6 +246,7 @@ void take_realizations(const std::string& path, const NamedColumns& found, Colum
     }
   }
   if (columns.size() < 2) refuse(path, names, "fewer than two columns are realizations");
+  require_one_unit(path, names, columns);
   roles.x = columns;
 }
 

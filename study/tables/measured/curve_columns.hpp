@@ -27,8 +27,9 @@ struct ColumnRoles {
   std::vector<std::string> notes;  // on columns that are not used, a sentence each
 };
 
-/// Columns by the names in the heading: t, tap or time; X, mean or value; sigma, error, se or
-/// standard_error; or realizations by any other names. A column that is an unnamed index, and a law
+/// Columns by the names in the heading: t, tap, taps or time; X, mean or value; sigma, error, se or
+/// standard_error; or realizations by any other names, but for those of errors, counts, weights and
+/// means. Realizations have one unit, sigma that of X. A column that is an unnamed index, and a law
 /// that `fit --csv` wrote, are not used. A text without a heading has its columns in this order.
 /// Throws BadInput with the names found and those allowed.
 ColumnRoles column_roles(const std::string& path, const DelimitedText& text, CurveColumns kind);

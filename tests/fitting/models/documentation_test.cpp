@@ -62,6 +62,15 @@ TEST_CASE("a report for people names what it gives") {
   CHECK(contains(describe(wide, ReportDetail::brief, {"mm", "s"}),
                  "  units: X_inf, dX, Z_inf, Z_0 in mm; tau in s\n"));
   CHECK(contains(describe(wide, ReportDetail::brief, {"1", "taps"}), "  units: tau in taps\n"));
+  const auto profile = make_model("profile");
+  const ParameterValues bed = {0.6, 0.001, 4, 12};
+  Curve heights{.t = {}, .x = {}};
+  for (double z = 5; z < 15; z += 0.5) {
+    heights.t.push_back(z);
+    heights.x.push_back(profile->value(z, bed.data()) + 1e-3 * ((heights.t.size() % 3) - 1.0));
+  }
+  const Fit surface = std::get<Fit>(fit(*profile, heights));
+  CHECK(contains(describe(surface, ReportDetail::brief, {"1", "R"}), "beta in 1/R"));
   const Fit second = std::get<Fit>(fit(kww, curve));
   const LawComparison comparison = compare_laws({{&inverse_log, &wide}, {&kww, &second}}, curve);
   CHECK(contains(compare({wide, second}, comparison), "kww"));

@@ -90,6 +90,55 @@ TEST_CASE("units are read in brackets behind the names of t and X") {
   CHECK(units("t (as read off the figure),X\n1,2\n2,3\n", {}) == ";");
 }
 
+TEST_CASE("errors, counts, weights and means are no realizations") {
+  for (const char* name :
+       {"std", "sem", "count", "sd", "stderr", "n", "weight", "average", "std.dev", "SIGMA_X",
+        "r0_error", "StdErr", "meanPhi", "sigma1", "Standard error [mm]", "value", "median"}) {
+    CAPTURE(name);
+    const std::string fault =
+        fault_of(std::string("t,a,b,") + name + "\n1,2,3,4\n2,3,4,5\n", several);
+    CHECK(contains(fault, std::string(name) + " names an error, a count, a weight or a mean"));
+  }
+  CHECK(contains(fault_of("t,X,mean\n1,2,3\n", several), "mean names an error"));
+  CHECK(contains(fault_of("t,X,mean,value\n1,2,3,4\n", several), "names an error"));
+  for (const char* name : {"n1", "sediment", "counter", "run_7", "east", "weighted"}) {
+    CAPTURE(name);
+    CHECK(fault_of(std::string("t,a,b,") + name + "\n1,2,3,4\n2,3,4,6\n", several).empty());
+  }
+}
+
+TEST_CASE("columns of different units are not averaged, nor is an error of another unit used") {
+  CHECK(contains(fault_of("t,a [mm],b [cm],c [mm]\n1,2,4,5\n2,3,5,7\n", several),
+                 "the realizations have several units (cm, mm)"));
+  CHECK(contains(fault_of("t,a [mm],b,c [mm]\n1,2,4,5\n2,3,5,7\n", several),
+                 "several units (mm, none)"));
+  CHECK(fault_of("t,run (a),run (b)\n1,2,4\n2,3,5\n", several).empty());
+  for (const char* text :
+       {"t,X [mm],sigma [cm]\n1,2,3\n", "t,X [mm],sigma [%]\n1,2,3\n", "t,X,sigma [mm]\n1,2,3\n"}) {
+    CAPTURE(text);
+    CHECK(contains(fault_of(text), "an error has the unit of its value"));
+  }
+  CHECK(fault_of("t,X [mm],sigma\n1,2,3\n").empty());
+  CHECK(fault_of("t,X [mm],sigma (mm)\n1,2,3\n").empty());
+  CHECK(fault_of("t,X [1],sigma [-]\n1,2,3\n").empty());
+}
+
+TEST_CASE("realizations that are copies count once") {
+  const MeasuredCurve partly = curve_of("t,a,b,c,d\n1,2,4,2,3\n2,3,5,3,5\n3,4,5,4,6\n", several);
+  CHECK(partly.curve.n_realizations == 3);
+  CHECK(partly.curve.x == std::vector<double>{3, 13.0 / 3, 5});
+  REQUIRE(partly.notes.size() == 1);
+  CHECK(partly.notes[0] ==
+        "1 of the 4 realizations repeats the series of another, so 3 realizations are used.");
+  const MeasuredCurve repeated = curve_of("t,a,b,c\n1,2,2,2\n2,3,3,3\n3,5,5,5\n", several);
+  CHECK(repeated.curve.n_realizations == 0);
+  CHECK(repeated.curve.x == std::vector<double>{2, 3, 5});
+  CHECK(repeated.notes.at(0) ==
+        "2 of the 3 realizations repeat the series of another, so 1 realization is used.");
+  // Constant columns may agree by chance.
+  CHECK(curve_of("t,a,b,c\n1,2,2,1\n2,2,2,3\n", several).curve.n_realizations == 3);
+}
+
 TEST_CASE("headings that are unknown or ambiguous are refused with what was found") {
   for (const char* text :
        {"t,phi\n1,2\n2,3\n", "a,b\n1,2\n", "t,X,std\n1,2,3\n", "t,X,value\n1,2,3\n",
@@ -99,7 +148,7 @@ TEST_CASE("headings that are unknown or ambiguous are refused with what was foun
     CAPTURE(text);
     const std::string fault = fault_of(text);
     CHECK(contains(fault, "Columns found: "));
-    CHECK(contains(fault, "Allowed names: t, tap or time"));
+    CHECK(contains(fault, "Allowed names: t, tap, taps or time"));
   }
   for (const char* text : {"t,X,r1,r2\n1,2,3,4\n", "t,mean,sigma\n1,2,3\n", "t,a,a\n1,2,3\n",
                            "t,a\n1,2\n", "a,b,c\n1,2,3\n", "t,a,b,sigma\n1,2,3,4\n"}) {
