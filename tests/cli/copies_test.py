@@ -92,7 +92,7 @@ class Copies(Case):
     def test_small_series_have_the_texts_of_large_ones(self):
         noise = self.tapped()
         texts = []
-        for factor in (1, 1e-12):
+        for factor in (1, 1e-15):
             self.replace((5 + noise) * factor)
             texts.append(self.jostle("analyse", "series.h5", "steady", "--observable", "mean_height", "--last", "64",
                                      "--no-store", environment=UNFOLDED).stdout)
@@ -100,7 +100,7 @@ class Copies(Case):
             large, small = (next(line for line in text.splitlines() if line.startswith(f"  {name} ")).split()[1]
                             for text in texts)
             self.assertIn("(", small, name)
-            self.assertAlmostEqual(float(small.split("(")[0] + "e" + small.split("e")[1]) * 1e12,
+            self.assertAlmostEqual(float(small.split("(")[0] + "e" + small.split("e")[1]) * 1e15,
                                    float(large.split("(")[0]), delta=0.06, msg=name)
 
     def test_a_drift_without_doubt_has_no_p_of_0(self):
