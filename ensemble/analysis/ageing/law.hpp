@@ -55,19 +55,43 @@ class AgeingLeastSquares {
   };
   const Cell& cell(std::size_t curve, std::size_t b, std::size_t tau) const;
   void fill_cells();
-  /// The best place of the grid, with one parameter held (or none).
+  struct Place {
+    double ln_tau, cost;
+  };
+  double ln_tau_at(double place) const;
+  bool is_scale(std::size_t parameter) const { return parameter != b() && parameter % 2 == 0; }
+  /// For the curve whose parameter is held, with B at a place of the grid.
+  Place place_with(std::size_t held, double value, std::size_t b) const;
+  /// The best point with B at a place of the grid, with one parameter held (or none).
+  Eigen::VectorXd at_b(std::size_t place, std::optional<std::size_t> held, double value) const;
+  /// The best of those of all B.
   Eigen::VectorXd on_grid(std::optional<std::size_t> held, double value) const;
+  /// The least squares: the lowest of the descents from every valley of the grid.
+  Eigen::VectorXd lowest_point() const;
+  /// True at an edge of the search from where the squares, with this slope, fall outwards.
+  bool is_on_edge(std::size_t parameter, const Eigen::VectorXd& parameters, double slope) const;
+  /// All that are neither held nor at such an edge.
+  std::vector<Eigen::Index> free_parameters(const Eigen::VectorXd& parameters,
+                                            const Eigen::MatrixXd& slopes,
+                                            const Eigen::VectorXd& residual,
+                                            std::optional<std::size_t> held) const;
+  /// Moves the free parameters, within the search, and fits every A_inf that is not held.
+  Eigen::VectorXd stepped(Eigen::VectorXd parameters, const std::vector<Eigen::Index>& free,
+                          const Eigen::VectorXd& change, std::optional<std::size_t> held) const;
+  Eigen::VectorXd fitted(const Eigen::VectorXd& start, std::optional<std::size_t> held) const;
   Eigen::VectorXd refined(Eigen::VectorXd parameters, std::optional<std::size_t> held) const;
   bool describes_curves() const;
   /// For the points in the slope of the squares along a parameter, the others fitted.
   Eigen::VectorXd weights_of(std::size_t parameter, const Eigen::VectorXd& parameters) const;
+  /// Those without the parameters at an edge, which are not fitted there.
+  Eigen::VectorXd fitted_weights_of(std::size_t parameter, const Eigen::VectorXd& parameters) const;
   /// Student's t of a value of a parameter.
   double t_of(std::size_t parameter, double value) const;
 
   LogCurves curves_;
-  std::vector<double> ln_b_, ln_tau_;               // the grid
-  std::vector<Cell> cells_;                         // [n_curves, n_b, n_tau]
-  std::vector<std::vector<std::size_t>> best_tau_;  // [n_curves][n_b]
+  std::vector<double> ln_b_, ln_tau_;                  // the grid
+  std::vector<Cell> cells_;                            // [n_curves, n_b, n_tau]
+  std::vector<std::vector<double>> best_tau_, least_;  // [n_curves][n_b]: ln tau, squares there
   Eigen::VectorXd best_;
   bool describes_ = true;
 };

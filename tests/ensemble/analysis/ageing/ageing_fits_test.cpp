@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/numbers.hpp"
 #include "ensemble/analysis/ageing/ageing_table.hpp"
 #include "ensemble/analysis/ageing/law.hpp"
 #include "tests/ensemble/analysis/ageing/ageing_paths.hpp"
@@ -136,6 +137,52 @@ TEST_CASE(
       }
     }
   }
+}
+
+// Sum of squares of ln A about eq. 6 with the best A_inf.
+double squares_at(const LogCurves& curve, double ln_b, double ln_tau) {
+  Eigen::VectorXd residual = curve.ln_a;
+  for (std::size_t i = 0; i < curve.lags.size(); ++i) {
+    residual[static_cast<Eigen::Index>(i)] -= ln_eq_6(curve.lags[i], ln_b, ln_tau);
+  }
+  return (residual.array() - residual.mean()).square().sum();
+}
+
+TEST_CASE("Estimates of eq. 6 are the least squares of the search, strictly inside their intervals",
+          "[statistics]") {
+  // The valley of short curves runs to the largest B.
+  const AgeingGrid short_grid = {.waiting_times = {0}, .lags = {1, 2, 3, 4, 6, 8, 12, 20, 32, 50}};
+  int at_largest_b = 0;
+  for (std::uint32_t e = 0; e < 60; ++e) {
+    RandomStream random = test_stream(700 + e);
+    TapRows rows{.taps = taps_of(short_grid), .realizations = 6, .values = {}};
+    const double p[] = {0.1, e % 2 == 0 ? 0.5 : 30.0, e % 2 == 0 ? 4.0 : 300.0};
+    std::vector<double> own(6, 0);
+    double previous = 0;
+    for (const std::uint64_t tap : rows.taps) {
+      const double now = tap == 0 ? 0 : Ageing().value(static_cast<double>(tap), p);
+      for (double& x : own) rows.values.push_back(x += std::sqrt(now - previous) * noise(random));
+      previous = now;
+    }
+    const LogCurves curve = log_curves(rows, short_grid, all_of(6));
+    const AgeingLeastSquares fit(curve);
+    double least = infinite;
+    for (double ln_b = -6.9; ln_b <= 6.9; ln_b += 0.3) {
+      for (double ln_tau = std::log(0.01); ln_tau <= std::log(5e5); ln_tau += 0.05) {
+        least = std::min(least, squares_at(curve, ln_b, ln_tau));
+      }
+    }
+    CAPTURE(e, fit.best()[0], fit.best()[1], fit.best()[2]);
+    CHECK(fit.residuals(fit.best()).squaredNorm() <= least * (1 + 1e-9));
+    at_largest_b += fit.best()[2] > 6.9;
+    const LogEstimate a = fit.estimate(AgeingLeastSquares::a_inf(0));
+    const double place = (1 - 1e-9) * a.value;
+    CHECK(a.low_95 <= a.low_68);
+    CHECK(a.low_68 < place);
+    CHECK(place * (1 + 2e-9) < a.high_68);
+    CHECK(a.high_68 <= a.high_95);
+  }
+  CHECK(at_largest_b >= 10);
 }
 
 TEST_CASE("Scaled curves of one B collapse, unscaled ones do not", "[statistics]") {
