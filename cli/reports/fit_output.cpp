@@ -245,6 +245,22 @@ std::string fits_text(const FittedCurve& fitted, const Layout& layout) {
   return wrapped(text, layout.width);
 }
 
+namespace {
+
+// The asymptote of the full law, as the summary of the fit has it: the law may go on to rise where
+// its limit ends. An asymptote without an upper or lower limit is its 95 % limit.
+std::string asymptote_of_law(const Fit& fit) {
+  const auto found = std::ranges::find_if(
+      fit.estimates, [](const Estimate& e) { return e.parameter.name.ends_with("_inf"); });
+  if (found == fit.estimates.end()) return "-";
+  const std::string name = found->parameter.name + " ";
+  const bool is_limited =
+      found->has_value() || found->identifiability == Identifiability::not_examined;
+  return name + (is_limited ? estimate_text(*found) : interval_text(*found, 1));
+}
+
+}  // namespace
+
 std::vector<FitSummary> summary_of(const FittedCurve& fitted) {
   std::vector<FitSummary> rows;
   const LawComparison& comparison = fitted.comparison;
@@ -252,12 +268,7 @@ std::vector<FitSummary> summary_of(const FittedCurve& fitted) {
     FitSummary row{
         fitted.source.observable, fitted.source.label, outcome.model, "fitted", "-", "-"};
     if (const auto* fit = std::get_if<Fit>(&outcome.result)) {
-      const std::vector<Estimate>& estimates = fit->limit ? fit->limit->estimates : fit->estimates;
-      const auto asymptote = std::ranges::find_if(
-          estimates, [](const Estimate& e) { return e.parameter.name.ends_with("_inf"); });
-      if (asymptote != estimates.end()) {
-        row.asymptote = asymptote->parameter.name + " " + estimate_text(*asymptote);
-      }
+      row.asymptote = asymptote_of_law(*fit);
     } else {
       row.verdict = "no fit";
     }
@@ -289,6 +300,9 @@ std::string summary_text(const std::vector<FitSummary>& rows, const Layout& layo
     cells.push_back(row.asymptote);
     return cells;
   };
+  const bool has_limits = std::ranges::any_of(rows, [](const FitSummary& row) {
+    return row.asymptote.find_first_of("<>") != std::string::npos;
+  });
   std::string text;
   std::vector<std::string> printed;
   for (const FitSummary& first : rows) {
@@ -305,7 +319,8 @@ std::string summary_text(const std::vector<FitSummary>& rows, const Layout& layo
     printed.push_back(observable);
   }
   return text + wrapped(fmt::format("a(b): b, in the last digits of a, is half the 68 % "
-                                    "interval.{} --verbose prints every fit.\n",
+                                    "interval.{}{} --verbose prints every fit.\n",
+                                    has_limits ? " > or <: the only 95 % limit." : "",
                                     is_compared ? " difference: of the held-out errors, from the "
                                                   "leading law."
                                                 : ""),

@@ -93,7 +93,8 @@ std::string identified(const Parameters& parameters) {
 /// Statement on the parameters of the law, or of its limit if that was fitted.
 std::string what_is_identified(const TableView& law) {
   if (law.note("limit").empty()) return identified({law});
-  return "Fitted as a limit of the law. " + identified({law, "limit_"});
+  return "Fitted as a limit of the law. Parameters of the limit: " + identified({law, "limit_"}) +
+         " Parameters of the full law: " + identified({law});
 }
 
 Json comparison(const std::vector<TableView>& laws) {
