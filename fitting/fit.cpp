@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fitting/binned_curve.hpp"
+#include "fitting/intervals/bounds.hpp"
 #include "fitting/intervals/derived_estimates.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/intervals/fit_errors.hpp"
@@ -47,6 +48,7 @@ class Fitter {
   bool descend_from_all();
   bool descend(const ParameterValues& start, int number);
   ParameterValues refined() const;
+  ParameterValues off_bounds(const ParameterValues& values, const Curve& curve, double cost) const;
   DependentErrors describe_fit(Fit& fit) const;
   /// False where a profile found a lower minimum; the search then continues there.
   bool find_intervals(const DependentErrors& errors, Fit& fit);
@@ -152,7 +154,16 @@ ParameterValues Fitter::refined() const {
   const CurveResiduals residuals(model_, curve_, values_, free_);
   const Minimum minimum =
       minimise(residuals, residuals.to_variables(values_), solver_options(residuals));
-  return is_minimum(minimum.reason) ? residuals.to_parameters(minimum.x) : values_;
+  if (!is_minimum(minimum.reason)) return values_;
+  return off_bounds(residuals.to_parameters(minimum.x), curve_, minimum.cost);
+}
+
+ParameterValues Fitter::off_bounds(const ParameterValues& values, const Curve& curve,
+                                   double cost) const {
+  const auto dof = static_cast<double>(curve.t.size()) - static_cast<double>(n_free());
+  const double variance = curve_.sigma.empty() ? cost / dof : 1;
+  if (best_.reason == EndReason::exact || !(dof > 0) || !(variance > 0)) return values;
+  return fitting::off_bounds({model_, curve, cost, variance}, values, free_);
 }
 
 // All but intervals and words, over all points. Returns what dependence makes of the errors.
@@ -232,11 +243,13 @@ bool Fitter::find_intervals(const DependentErrors& errors, Fit& fit) {
       }
       continue;
     }
-    const ParameterProfile found = profile(problem, j, estimate.standard_error);
+    ParameterProfile found = profile(problem, j, estimate.standard_error);
     if (found.better && !options_.solver.budget->spent()) {
       const double previous = best_.cost;
       descend(*found.better, best_start_);
       if (best_.cost < previous) return false;
+      problem.seek_better = false;
+      found = profile(problem, j, estimate.standard_error);
     }
     estimate.intervals[0] = found.intervals[0];
     estimate.intervals[1] = found.intervals[1];
@@ -281,11 +294,13 @@ Fit Fitter::finish() {
   const bool any_fixed = n_free() < free_.size();
   for (int attempt = 0;; ++attempt) {
     const ParameterValues canonical = any_fixed ? values_ : model_.canonical(values_);
-    if (canonical != values_) {
-      values_ = canonical;
-      const CurveResiduals reordered(model_, searched_, values_, free_);
-      best_.x = reordered.to_variables(values_);
-      reordered.values_and_jacobian(best_.x, best_.r, best_.jacobian);
+    const ParameterValues placed = off_bounds(canonical, searched_, best_.cost);
+    if (placed != values_) {
+      values_ = placed;
+      const CurveResiduals moved(model_, searched_, values_, free_);
+      best_.x = moved.to_variables(values_);
+      moved.values_and_jacobian(best_.x, best_.r, best_.jacobian);
+      best_.cost = canonical == placed ? best_.cost : best_.r.squaredNorm();
     }
     Fit fit;
     const DependentErrors errors = describe_fit(fit);

@@ -287,8 +287,8 @@ std::variant<Fit, Refusal> fit_at_limit(const Model& model, const Curve& curve,
   fit.limit = {limit.law->name(), limit.law->formula(),
                "The least squares of " + model.name() + " lie at its limit " +
                    limit.law->formula() + ": " + limit.approach +
-                   ". The data determine this law of " + std::to_string(found.estimates.size()) +
-                   (found.estimates.size() == 1 ? " parameter" : " parameters") + ", and not " +
+                   ". The data determine this law of " + std::to_string(found.n_free) +
+                   (found.n_free == 1 ? " parameter" : " parameters") + ", and not " +
                    listed_limits(lost) + (lost.size() > 1 ? " separately." : "."),
                limit.law, found.estimates};
   fit.remarks.insert(fit.remarks.begin(), fit.limit->statement);

@@ -7,11 +7,14 @@
 #include <set>
 #include <sstream>
 
+#include "fitting/intervals/fit_errors.hpp"
 #include "fitting/value_text.hpp"
 
 namespace jostle::inline fitting {
 
 namespace {
+
+constexpr double rounding_of_r2 = 1e-6;
 
 std::string number(double value, int digits) {
   return std::isfinite(value) ? number_text(value, digits) : "-";
@@ -103,12 +106,6 @@ std::string more_of_the_parameters(const Fit& fit) {
   return table(rows) + meanings + '\n';
 }
 
-double largest_error(const Fit& fit) {
-  double largest = 0;
-  for (const Estimate& estimate : fit.estimates) largest = std::max(largest, estimate.error);
-  return largest;
-}
-
 // ", taken as exact; by the scatter around the law they are 2.1 times longer"
 std::string scatter_text(const Fit& fit) {
   return ", taken as exact; by the scatter around the law they are " +
@@ -120,7 +117,7 @@ std::string basis_of_errors(const Fit& fit) {
   std::ostringstream text;
   text << fit.n_points << " points";
   if (fit.n_bins > 0) text << " fitted as " << fit.n_bins << " means over at most 1 % of t";
-  if (fit.n_realizations == 0 && fit.memory.time > 0 && !std::isfinite(largest_error(fit))) {
+  if (fit.n_realizations == 0 && too_short_for_errors(fit)) {
     text << "; no errors, because the residuals are correlated for too long";
     return text.str();
   }
@@ -278,7 +275,7 @@ std::string describe(const Fit& fit, ReportDetail detail, const CurveUnits& unit
   }
   text << listed_units(fit, units) << "  " << basis_of_errors(fit) << "; reduced "
        << (fit.sigma_given ? "chi2 " : "residual sum ") << number(fit.reduced_chi2, 3) << ", R2 "
-       << number(fit.r2, 4) << '\n';
+       << number(std::abs(fit.r2) < rounding_of_r2 ? 0 : fit.r2, 4) << '\n';
   if (detail == ReportDetail::full) text << more_of_the_parameters(fit) << statistics(fit);
   for (const std::string& remark : fit.remarks) text << "  ! " << remark << '\n';
   return text.str();

@@ -25,8 +25,17 @@ constexpr double least_level_weight = 1e-6;
 // Linear map of least squares on residuals: an orthonormal basis Q of the Jacobian's columns, and
 // for every variable the combination of Q^T r that is its change.
 struct Influence {
-  Eigen::MatrixXd basis;    // [n_points, n_variables]
-  Eigen::MatrixXd changes;  // [n_variables, n_variables], a variable a column
+  Eigen::MatrixXd basis;     // [n_points, n_variables]
+  Eigen::MatrixXd changes;   // [n_variables, n_variables], a variable a column
+  Eigen::MatrixXd relative;  // changes in units of the columns' norms
+
+  /// The direction of a column of `changes`. The column itself overflows where the curve hardly
+  /// depends on the variable.
+  Eigen::VectorXd direction(Eigen::Index j) const {
+    const Eigen::VectorXd plain = changes.col(j).normalized();
+    if (plain.allFinite()) return plain;
+    return relative.col(j).stableNormalized();
+  }
 };
 
 Influence influence(const Eigen::MatrixXd& jacobian) {
@@ -42,8 +51,9 @@ Influence influence(const Eigen::MatrixXd& jacobian) {
   }
   Influence found;
   found.basis = std::move(basis);
-  found.changes = triangle.transpose().template triangularView<Eigen::Lower>().solve(
-      Eigen::MatrixXd::Identity(n, n) * norms.cwiseInverse().asDiagonal());
+  const auto lower = triangle.transpose().template triangularView<Eigen::Lower>();
+  found.changes = lower.solve(Eigen::MatrixXd::Identity(n, n) * norms.cwiseInverse().asDiagonal());
+  found.relative = lower.solve(Eigen::MatrixXd::Identity(n, n));
   return found;
 }
 
@@ -58,9 +68,11 @@ DependentErrors errors_of(const Influence& found, const Eigen::MatrixXd& scatter
   errors.independent = found.changes.transpose() * compliance * found.changes;
   errors.inflation.resize(found.changes.cols());
   for (Eigen::Index j = 0; j < errors.inflation.size(); ++j) {
-    const Eigen::VectorXd direction = found.changes.col(j).normalized();
-    errors.inflation[j] = std::max(
-        direction.dot(moved * direction) / direction.dot(compliance * direction), least_inflation);
+    const Eigen::VectorXd direction = found.direction(j);
+    const double ratio = direction.dot(moved * direction) / direction.dot(compliance * direction);
+    errors.inflation[j] = std::isfinite(ratio) ? std::max(ratio, least_inflation) : 1;
+    // The curve hardly depends on the variable.
+    if (std::isnan(errors.covariance(j, j))) errors.covariance(j, j) = infinite;
   }
   errors.dof = dof;
   return errors;

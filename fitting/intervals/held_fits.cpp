@@ -34,20 +34,21 @@ double rounded_size(const ProfileProblem& problem) {
 
 }  // namespace
 
-Coordinate::Coordinate(const ProfileProblem& problem, std::size_t index)
-    : transform_(problem.model.parameters()[index]) {
-  if (!transform_.is_identity()) return;
+Coordinate::Coordinate(const ProfileProblem& problem, std::size_t index, bool plain)
+    : transform_(plain ? Parameter{} : problem.model.parameters()[index]) {
+  if (plain || !transform_.is_identity()) return;
   if (problem.model.parameters()[index].unit != ParameterUnit::value) return;
   const auto [low, high] = std::minmax_element(problem.curve.x.begin(), problem.curve.x.end());
   far_ = std::abs(problem.minimum[index]) > far_away * largest_size(problem.curve);
   scale_ = *high - *low;
 }
 
-HeldFits::HeldFits(const ProfileProblem& problem, std::size_t index, double direction)
+HeldFits::HeldFits(const ProfileProblem& problem, std::size_t index, double direction,
+                   const Coordinate& coordinate)
     : problem_(problem),
       index_(index),
       direction_(direction),
-      coordinate_(problem, index),
+      coordinate_(coordinate),
       centre_(coordinate_.to_variable(problem.minimum[index])),
       free_(problem.free),
       largest_(rounded_size(problem)),
@@ -132,7 +133,8 @@ HeldFit HeldFits::descend(double distance, ParameterValues guess) {
   if (!std::isfinite(guess[index_])) return {distance, infinite, false, guess};
   HeldFit point = in_order(held(distance, guess, free_));
   // Lower by what the thresholds could notice: the minimum was not one.
-  if (point.z < -1e-2 * problem_.thresholds[0] && has_digits(point.p)) better_ = point.p;
+  const bool is_lower = point.z < -1e-2 * problem_.thresholds[0];
+  if (problem_.seek_better && is_lower && has_digits(point.p)) better_ = point.p;
   point.z = std::max(point.z, 0.0);
   return point;
 }

@@ -9,10 +9,11 @@
 namespace jostle::inline fitting {
 
 /// The variable that a profile runs along: that of the fit; but for a value far from all that was
-/// measured its logarithm, or else nothing between there and the data would be resolved.
+/// measured its logarithm, or else nothing between there and the data would be resolved. `plain`:
+/// the parameter itself, whatever its bounds.
 class Coordinate {
  public:
-  Coordinate(const ProfileProblem& problem, std::size_t index);
+  Coordinate(const ProfileProblem& problem, std::size_t index, bool plain = false);
 
   double to_variable(double p) const {
     return far_ ? std::asinh(p / scale_) : transform_.to_variable(p);
@@ -42,7 +43,8 @@ struct HeldFit {
 class HeldFits {
  public:
   /// direction: 1 or -1, that of the coordinate.
-  HeldFits(const ProfileProblem& problem, std::size_t index, double direction);
+  HeldFits(const ProfileProblem& problem, std::size_t index, double direction,
+           const Coordinate& coordinate);
 
   /// The fit at `distance`, sought from its neighbour nearer to the minimum (and from one `beyond`)
   /// and, where it does not settle or z jumps, from elsewhere.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fitting/intervals/bounds.hpp"
 #include "fitting/intervals/held_fits.hpp"
 #include "fitting/numbers.hpp"
 
@@ -17,8 +18,9 @@ constexpr double flat = 0.01;  // rise of z over the last half of the way, in th
 // alone, and where z rises to it without a jump.
 class Side {
  public:
-  Side(const ProfileProblem& problem, std::size_t index, double direction)
-      : problem_(problem), index_(index), fits_(problem, index, direction) {}
+  Side(const ProfileProblem& problem, std::size_t index, double direction,
+       const Coordinate& coordinate)
+      : problem_(problem), index_(index), fits_(problem, index, direction, coordinate) {}
 
   /// Fills the ends of the intervals on this side; infinite where nothing closes one. `step`: about
   /// one standard error in the coordinate.
@@ -27,6 +29,7 @@ class Side {
 
  private:
   double reach(double& step) const;
+  double room() const;
   std::vector<HeldFit> march(double step);
   void revise(std::vector<HeldFit>& points, const HeldFit& found);
   double crossing(HeldFit low, HeldFit high, double threshold);
@@ -82,6 +85,14 @@ bool Side::is_flat_before(double distance, const std::vector<HeldFit>& points, d
   return point.settled && point.z > (1 - flat) * threshold;
 }
 
+// The distance to a bound ahead that the coordinate does not know.
+double Side::room() const {
+  constexpr double left = 1e-9;
+  const Parameter& parameter = problem_.model.parameters()[index_];
+  const double value = problem_.minimum[index_];
+  return (1 - left) * (fits_.direction() > 0 ? parameter.upper - value : value - parameter.lower);
+}
+
 // How far a side is explored.
 double Side::reach(double& step) const {
   if (fits_.coordinate().is_logarithmic()) {
@@ -94,12 +105,12 @@ double Side::reach(double& step) const {
   }
   const Parameter& parameter = problem_.model.parameters()[index_];
   if (parameter.unit != ParameterUnit::value) {
-    return reach_of_errors * std::max(step, std::abs(fits_.centre()));
+    return std::min(reach_of_errors * std::max(step, std::abs(fits_.centre())), room());
   }
   // A standard error can be anything where the problem is degenerate; the curve's range cannot.
   const auto [low, high] = std::minmax_element(problem_.curve.x.begin(), problem_.curve.x.end());
   step = std::min(step, *high - *low);
-  return reach_of_values * std::max(*high - *low, std::abs(fits_.centre()));
+  return std::min(reach_of_values * std::max(*high - *low, std::abs(fits_.centre())), room());
 }
 
 // Where a search met a lower branch of z, the points before it may belong to the higher one.
@@ -150,9 +161,9 @@ void Side::find_ends(double step, double ends[2]) {
     const double threshold = problem_.thresholds[level];
     const auto inside = std::find_if(points.rbegin(), points.rend(),
                                      [&](const HeldFit& point) { return point.z < threshold; });
+    if (inside == points.rend()) continue;  // no threshold that is a positive number
     const auto outside = std::find_if(inside.base(), points.end(),
                                       [](const HeldFit& point) { return point.settled; });
-    ends[level] = fits_.direction() * infinite;
     if (outside == points.end()) continue;
     const double distance = crossing(*inside, *outside, threshold);
     if (!std::isfinite(distance) || is_flat_before(distance, points, threshold)) continue;
@@ -160,24 +171,27 @@ void Side::find_ends(double step, double ends[2]) {
   }
 }
 
-}  // namespace
-
-ParameterProfile profile(const ProfileProblem& problem, std::size_t index, double error, int only) {
+// The ends on both sides; all of z must be more than rounding.
+ParameterProfile resolved_profile(const ProfileProblem& problem, std::size_t index, double error,
+                                  int only) {
   ParameterProfile result;
-  const Coordinate coordinate(problem, index);
-  const double slope = std::abs(coordinate.slope(coordinate.to_variable(problem.minimum[index])));
-  const double step = std::clamp(error / slope, std::numeric_limits<double>::min(), 1e300);
+  const Surroundings minimum{problem.model, problem.curve, problem.cost, problem.variance,
+                             problem.level_weight};
+  const auto near = near_bound(minimum, problem.minimum, index);
   for (double direction : {-1.0, 1.0}) {
     double ends[2] = {direction * infinite, direction * infinite};
-    if (only != 0 && direction * only < 0) {
-      for (Interval& interval : result.intervals) {
-        (direction < 0 ? interval.lower : interval.upper) = direction * infinite;
-      }
-      continue;
-    }
+    if (only != 0 && direction * only < 0) continue;
+    // Away from a bound that the curve does not distinguish from the minimum, a logarithm would not
+    // come to what the curve resolves.
+    const bool leaves_bound =
+        near && direction == near->direction && near->distance < least_resolved * near->resolved;
+    const Coordinate coordinate(problem, index, leaves_bound);
+    const double slope = std::abs(coordinate.slope(coordinate.to_variable(problem.minimum[index])));
+    const double wanted = leaves_bound ? near->resolved : error / slope;
+    const double step = std::clamp(wanted, std::numeric_limits<double>::min(), 1e300);
     // Below a bound from above, u and p run against each other.
     const bool reversed = coordinate.slope(0) < 0;
-    Side side(problem, index, reversed ? -direction : direction);
+    Side side(problem, index, reversed ? -direction : direction, coordinate);
     side.find_ends(step, ends);
     for (int level = 0; level < 2; ++level) {
       if (!std::isfinite(ends[level])) ends[level] = direction * infinite;
@@ -193,6 +207,36 @@ ParameterProfile profile(const ProfileProblem& problem, std::size_t index, doubl
   wide.lower = std::min(wide.lower, result.intervals[0].lower);
   wide.upper = std::max(wide.upper, result.intervals[0].upper);
   return result;
+}
+
+// The rounding of a cost, in variances of a residual: relative to the cost itself, and of residuals
+// that are differences of data.
+double rounding_of_cost(const ProfileProblem& problem) {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  const CurveResiduals residuals(problem.model, problem.curve, problem.minimum, problem.free,
+                                 problem.level_weight);
+  const double of_data = epsilon * residuals.data_norm();
+  const double root = std::sqrt(problem.cost);
+  return (8 * epsilon * root * root + 2 * of_data * root + of_data * of_data) / problem.variance;
+}
+
+}  // namespace
+
+// Where a rise of the cost by the thresholds would be lost in its rounding, the errors are tiny and
+// the cost is quadratic far beyond them: the profile of longer errors, shortened.
+ParameterProfile profile(const ProfileProblem& problem, std::size_t index, double error, int only) {
+  constexpr double resolved = 1e-5;
+  const double factor = rounding_of_cost(problem) / resolved;
+  if (!(factor > 1) || !std::isfinite(factor)) return resolved_profile(problem, index, error, only);
+  ProfileProblem longer = problem;
+  longer.variance *= factor;
+  ParameterProfile found = resolved_profile(longer, index, std::sqrt(factor) * error, only);
+  const double value = problem.minimum[index];
+  for (Interval& interval : found.intervals) {
+    interval.lower = value + (interval.lower - value) / std::sqrt(factor);
+    interval.upper = value + (interval.upper - value) / std::sqrt(factor);
+  }
+  return found;
 }
 
 }  // namespace jostle::inline fitting

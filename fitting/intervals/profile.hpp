@@ -22,10 +22,16 @@ struct ProfileProblem {
   double thresholds[2] = {0, 0};  // sqrt of how much cost / variance may rise, ascending
   SolverOptions solver;
   double level_weight = 1;  // DependentErrors::level_weight, on which the thresholds rest
+  /// True if a lower cost is looked for. False where one was met that no descent confirms: rounding
+  /// decides there, and all of it counts as the minimum.
+  bool seek_better = true;
 };
 
 struct ParameterProfile {
-  Interval intervals[2];  // in the order of the thresholds
+  /// In the order of the thresholds; open on every side that was not searched to its end.
+  Interval intervals[2] = {
+      {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()},
+      {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}};
   /// Parameters of a lower cost than the minimum's, where one was met; the intervals are then void.
   std::optional<ParameterValues> better;
 };

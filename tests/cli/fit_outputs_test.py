@@ -7,7 +7,7 @@ import re
 import unittest
 from random import Random
 
-from support import BAD_INPUT, UNFOLDED, Case, some
+from support import BAD_INPUT, SOURCE, UNFOLDED, Case, some
 
 ROW = re.compile(r"^  (\S+) +(\S+) +(no limit|[<>] \S+|\S+ to \S+) +(identified|wide|only a lower limit|"
                  r"only an upper limit|not identifiable)$", re.M)
@@ -156,6 +156,25 @@ class LawsOfManyParameters(Case):
                 self.assertLess(fit["total_evaluations"], allowed + 10 * (2 * terms + 1))
                 self.assertTrue(any("limit of evaluations (" in remark and "for 300 points" in remark
                                     for remark in fit["remarks"]))
+
+    def test_a_noisy_constant_has_consistent_intervals(self):
+        for points in (60, 200):
+            curve = str(SOURCE / f"tests/data/fits/constant_{points}.csv")
+            fits = json.loads(self.jostle("fit", curve, "--model", "all", "--json").stdout)["curves"][0]["fits"]
+            for fit in fits:
+                for name, found in fit["parameters"].items():
+                    with self.subTest(points=points, model=fit["model"], parameter=name):
+                        self.require_consistent(found)
+
+    def require_consistent(self, found):
+        narrow, wide = (
+            (-math.inf if low is None else low, math.inf if high is None else high)
+            for low, high in (found["interval_68"], found["interval_95"]))
+        self.assertTrue(wide[0] <= narrow[0] <= narrow[1] <= wide[1])
+        if found["value"] is not None:
+            self.assertTrue(narrow[0] <= found["value"] <= narrow[1])
+        if found["half_width_68"] is not None:
+            self.assertGreaterEqual(found["half_width_68"], 0)
 
 
 if __name__ == "__main__":
