@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "fitting/binned_curve.hpp"
-#include "fitting/intervals/bounds.hpp"
 #include "fitting/intervals/derived_estimates.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/intervals/fit_errors.hpp"
@@ -16,6 +15,7 @@
 #include "fitting/limit_fit.hpp"
 #include "fitting/numbers.hpp"
 #include "fitting/refusal.hpp"
+#include "fitting/solver/bounds.hpp"
 #include "fitting/solver/curve_residuals.hpp"
 #include "fitting/solver/grid.hpp"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fitting/intervals/bounds.hpp"
 #include "fitting/intervals/held_fits.hpp"
 #include "fitting/numbers.hpp"
+#include "fitting/solver/bounds.hpp"
 
 namespace jostle::inline fitting {
 

@@ -1,4 +1,4 @@
-#include "fitting/intervals/bounds.hpp"
+#include "fitting/solver/bounds.hpp"
 
 #include <cmath>
 
