@@ -68,9 +68,11 @@ AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogS
   // A short series' memory comes out too short, and its lowest lines too low: by so much slopes of
   // true AR(1) are off, however many realizations there are.
   constexpr double bias = 0.03;
+  // A time that is below 1/2 by less than two errors may be that of white noise, whose slope is 0.
+  const bool may_be_white = memory.time < 0.5 && memory.time + 2 * memory.error > 0.5;
   found.error = {std::hypot(0.5 * (value_at(memory.time + memory.error) -
                                    value_at(memory.time - memory.error)),
-                            bias),
+                            bias, may_be_white ? found.slope : 0),
                  std::numeric_limits<double>::infinity()};
   found.p =
       p_value(measured.slope - found.slope, combined({measured.error, measured.dof}, found.error));
