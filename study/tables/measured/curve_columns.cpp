@@ -71,6 +71,25 @@ bool is_statistic(const std::string& name) {
                              [](const std::string& word) { return is_in(statistic_words, word); });
 }
 
+/// True for numbered columns of one name that speaks of a mean: "mean_height_0", "mean_height_1".
+bool are_numbered_means(const std::vector<std::string>& names,
+                        const std::vector<std::size_t>& columns) {
+  constexpr std::array mean_words = {"mean", "means", "avg", "average", "averages", "median"};
+  const auto words_of = [&](std::size_t column) {
+    std::vector<std::string> words = name_words(names[column]);
+    std::erase(words, "");
+    return words;
+  };
+  const std::vector<std::string> words = words_of(columns.front());
+  const bool is_mean = std::ranges::none_of(words, [&](const std::string& word) {
+    return is_in(statistic_words, word) && !is_in(mean_words, word);
+  });
+  return is_mean && std::ranges::all_of(columns, [&](std::size_t column) {
+           return words_of(column) == words &&
+                  names[column].find_first_of("0123456789") != std::string::npos;
+         });
+}
+
 /// "s" of "Time [s]"; empty without brackets, and for a text that is too long for a unit.
 std::string unit_of(const std::string& name) {
   const std::size_t open = name.find_first_of("([");
@@ -224,7 +243,7 @@ void take_realizations(const std::string& path, const NamedColumns& found, Colum
   }
   const auto statistic = std::ranges::find_if(
       columns, [&](std::size_t column) { return is_statistic(names[column]); });
-  if (statistic != columns.end()) {
+  if (statistic != columns.end() && !are_numbered_means(names, columns)) {
     refuse(path, names,
            fmt::format("{} names an error, a count, a weight or a mean, not a realization: remove "
                        "the column",

@@ -107,6 +107,14 @@ TEST_CASE("errors, counts, weights and means are no realizations") {
   }
 }
 
+TEST_CASE("numbered columns of one mean are realizations") {
+  CHECK(fault_of("t,mean_height_9,mean_height_10\n1,2,4\n2,3,5\n", several).empty());
+  CHECK(
+      contains(fault_of("t,mean_height_0,mean_phi_1\n1,2,4\n2,3,5\n", several), "names an error"));
+  CHECK(contains(fault_of("t,std_0,std_1\n1,2,4\n2,3,5\n", several), "names an error"));
+  CHECK(contains(fault_of("t,mean_a,mean\n1,2,4\n2,3,5\n", several), "names an error"));
+}
+
 TEST_CASE("columns of different units are not averaged, nor is an error of another unit used") {
   CHECK(contains(fault_of("t,a [mm],b [cm],c [mm]\n1,2,4,5\n2,3,5,7\n", several),
                  "the realizations have several units (cm, mm)"));
