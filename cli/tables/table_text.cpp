@@ -30,8 +30,7 @@ bool is_probability(const std::string& name) {
 /// Values without an error have four digits; whole numbers have all.
 std::string plain_number(double number, const std::string& name) {
   const bool whole = number == std::trunc(number) && std::abs(number) < 1e7;
-  if (is_probability(name) && !whole) return probability_text(number);
-  if (is_probability(name) && number == 0) return probability_text(number);
+  if (is_probability(name) && (!whole || number == 0)) return probability_text(number);
   return number_text(number, whole ? 7 : 4);
 }
 

@@ -71,8 +71,8 @@ class SpectrumAverage {
   /// M - 1 degrees of freedom; of fewer than 3, from the scatter about the line.
   LogLogSlope slope(const Band& band) const;
   /// Returns the mean of slope() for an AR(1) process of autocorrelation time `time` > 0 (below
-  /// 1/2: of negative rho),
-  /// without its scatter, for the windows, bins, band and straight line of slope().
+  /// 1/2: of negative rho), without its scatter, for the windows, bins, band and straight line of
+  /// slope().
   double autoregressive_slope(double time, const Band& band) const;
 
  private:

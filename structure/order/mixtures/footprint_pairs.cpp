@@ -29,7 +29,7 @@ double mean_product(double first, double second, double of_one_sphere, double n)
   return n > 1 ? (first * second - of_one_sphere) / (n * (n - 1)) : 0;
 }
 
-/// DisplacementsAlong along one direction: their distribution, symmetric about 0.
+/// Distribution of displacements along one direction, in either sense.
 class DisplacementsAlong {
  public:
   /// Evenly spread over a period.

@@ -28,8 +28,7 @@ constexpr std::array statistic_words = {
 constexpr std::array statistic_names = {"n", "w", "var", "number", "value"};  // whole names
 constexpr const char* allowed =
     "t, tap, taps or time; X, mean or value; sigma, error, se or standard_error (where "
-    "realizations are "
-    "asked for, t and a column of any name each)";
+    "realizations are asked for, t and a column of any name each)";
 
 template <class Names>
 bool is_in(const Names& names, const std::string& name) {
