@@ -50,10 +50,10 @@ Calls calls_of_a_study(const synthetic::StudySize& size) {
 }
 
 void check_growth(const synthetic::StudySize& small, const synthetic::StudySize& large) {
-  const Calls few = calls_of_a_study(small), many = calls_of_a_study(large);
-  CAPTURE(few.changes, few.reads);
-  CHECK(many.changes <= most_growth * few.changes);
-  CHECK(many.reads <= most_growth * few.reads);
+  const Calls of_small = calls_of_a_study(small), of_large = calls_of_a_study(large);
+  CAPTURE(of_small.changes, of_small.reads);
+  CHECK(of_large.changes <= most_growth * of_small.changes);
+  CHECK(of_large.reads <= most_growth * of_small.reads);
 }
 
 }  // namespace
