@@ -161,23 +161,30 @@ long fit_layers(const Crystal& crystal, CrystalPlan& plan, double height) {
 
 }  // namespace
 
-std::vector<Vec3> build_crystal(const Crystal& crystal, const Container& container,
-                                std::uint32_t n_spheres) {
+std::optional<std::string> Crystal::container_fault(const Container& container) const {
   const Boundary boundary(container);
-  CrystalPlan plan = plan_crystal(crystal, boundary);
+  if (boundary.periodic_x || boundary.periodic_y || !stretch) return std::nullopt;
+  return "stretch spaces rows out to a period, and there is none between walls: leave it out or "
+         "use periodic sides";
+}
+
+std::vector<Vec3> Crystal::place(const Placing& placing) const {
+  const std::uint32_t n_spheres = placing.spheres.n;
+  const Boundary boundary(placing.container);
+  CrystalPlan plan = plan_crystal(*this, boundary);
   const std::vector<Vec3> kinds[2] = {layer_sites(plan, boundary, false),
                                       layer_sites(plan, boundary, true)};
   if (kinds[0].empty() || kinds[1].empty()) {
-    throw StartError(std::string(name(crystal.lattice)) +
+    throw StartError(std::string(name(lattice)) +
                      ": the container is too narrow for one of the two kinds of layers to have a "
                      "site; widen it, or pour the spheres");
   }
   if (boundary.periodic_z) {
-    const long layers = fit_layers(crystal, plan, boundary.height);
+    const long layers = fit_layers(*this, plan, boundary.height);
     const auto capacity = static_cast<std::size_t>(layers) * kinds[0].size();
     if (n_spheres > capacity) {
-      throw StartError(std::string(name(crystal.lattice)) + ": the box has " +
-                       std::to_string(capacity) + " sites for " + std::to_string(n_spheres) +
+      throw StartError(std::string(name(lattice)) + ": the box has " + std::to_string(capacity) +
+                       " sites for " + std::to_string(n_spheres) +
                        " spheres; enlarge it or take fewer spheres");
     }
   }

@@ -37,23 +37,27 @@ void check_overlaps(const Packing& packing, double most_overlap) {
 
 }  // namespace
 
-std::vector<Vec3> check_given(const GivenPacking& given, const Container& container,
-                              const StartSpheres& spheres) {
-  if (given.centres == nullptr) refuse("it holds no centres; read them from a file first");
-  if (given.centres->size() != spheres.n) {
-    refuse("it holds " + std::to_string(given.centres->size()) + " spheres where " +
+std::optional<std::string> GivenPacking::container_fault(const Container&) const {
+  return std::nullopt;
+}
+
+std::vector<Vec3> GivenPacking::place(const Placing& placing) const {
+  const StartSpheres& spheres = placing.spheres;
+  if (centres == nullptr) refuse("it holds no centres; read them from a file first");
+  if (centres->size() != spheres.n) {
+    refuse("it holds " + std::to_string(centres->size()) + " spheres where " +
            std::to_string(spheres.n) + " are asked for; ask for as many as it holds");
   }
-  const bool same_sizes = given.sizes == spheres.sizes ||
-                          (given.sizes && spheres.sizes && *given.sizes == *spheres.sizes);
+  const bool same_sizes =
+      sizes == spheres.sizes || (sizes && spheres.sizes && *sizes == *spheres.sizes);
   if (!same_sizes) refuse("it holds spheres of other sizes than those asked for");
   // Far outside the container a coordinate is no rounding: refused here, before any neighbours are
   // sought.
   constexpr double far_outside = 1;
-  const Boundary boundary(container);
-  Packing packing{container, {}, spheres.sizes};
+  const Boundary boundary(placing.container);
+  Packing packing{placing.container, {}, spheres.sizes};
   packing.centres.reserve(spheres.n);
-  for (const Vec3& centre : *given.centres) {
+  for (const Vec3& centre : *centres) {
     const std::string name = "sphere " + std::to_string(packing.centres.size());
     if (!std::isfinite(centre.x) || !std::isfinite(centre.y) || !std::isfinite(centre.z)) {
       refuse(name + " has a coordinate that is not a finite number; correct the file");
@@ -66,7 +70,7 @@ std::vector<Vec3> check_given(const GivenPacking& given, const Container& contai
     }
     packing.centres.push_back(r);
   }
-  check_overlaps(packing, given.most_overlap);
+  check_overlaps(packing, most_overlap);
   return packing.centres;
 }
 

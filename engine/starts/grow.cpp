@@ -79,24 +79,29 @@ double growth_limit(double least) {
 
 }  // namespace
 
-std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, const StartSpheres& wanted,
-                       RandomStream& random, const StopAsked& stop) {
-  const std::uint32_t n_spheres = wanted.n;
+std::optional<std::string> Grow::container_fault(const Container& container) const {
+  if (!has_gravity(container)) return std::nullopt;
+  return "spheres grow in a fully_periodic container only: elsewhere pour them";
+}
+
+std::vector<Vec3> Grow::place(const Placing& placing) const {
+  const auto& box = std::get<FullyPeriodicBox>(placing.container);
+  const std::uint32_t n_spheres = placing.spheres.n;
+  RandomStream& random = placing.random;
   std::vector<Vec3> points;
   for (std::uint32_t sphere = 0; sphere < n_spheres; ++sphere) {
     const double x = box.width_x * random.uniform(), y = box.width_y * random.uniform();
     points.push_back(wrapped(box, {x, y, box.height * random.uniform()}));
   }
-  Packing packing{box, std::move(points), wanted.sizes};
+  Packing packing{box, std::move(points), placing.spheres.sizes};
   const double fraction = solid_volume(packing) / (box.width_x * box.width_y * box.height);
   GrowingSpheres spheres(box, std::move(packing));
   constexpr std::uint64_t renewal = 20;  // sweeps
   const double longest_step = 0.1 * spheres.shortest_diameter();
   const double shortest_step = 1e-4 * spheres.shortest_diameter();
   double max_step = longest_step;
-  for (std::uint64_t sweep = 0; sweep < start.max_sweeps && spheres.full_grown() < n_spheres;
-       ++sweep) {
-    throw_if_stopped(stop);
+  for (std::uint64_t sweep = 0; sweep < max_sweeps && spheres.full_grown() < n_spheres; ++sweep) {
+    throw_if_stopped(placing.stop);
     const double limit = growth_limit(spheres.least_growth());
     if (sweep % renewal == 0) spheres.renew_lists();
     const std::uint64_t accepted = spheres.accepted();
@@ -110,8 +115,8 @@ std::vector<Vec3> grow(const Grow& start, const FullyPeriodicBox& box, const Sta
   if (spheres.full_grown() < n_spheres) {
     throw StartError("grow: " + std::to_string(n_spheres - spheres.full_grown()) + " of " +
                      std::to_string(n_spheres) + " spheres did not reach " +
-                     (wanted.sizes ? "their diameter" : "diameter 1") + " in " +
-                     std::to_string(start.max_sweeps) +
+                     (placing.spheres.sizes ? "their diameter" : "diameter 1") + " in " +
+                     std::to_string(max_sweeps) +
                      " sweeps; raise max_sweeps or lower the packing fraction (" +
                      std::to_string(fraction) + ")");
   }

@@ -44,20 +44,29 @@ Vec3 pour_one(const PourBed& bed, std::uint32_t sphere, RandomStream& random, Po
                    " drops; change the seed or the width by a little");
 }
 
-std::vector<Vec3> pour(const Container& container, const StartSpheres& spheres,
-                       RandomStream& random, const StopAsked& stop, PourTally* tally) {
-  PourBed bed = spheres.sizes ? PourBed(container, spheres.sizes) : PourBed(container, spheres.n);
+std::vector<Vec3> pour(const Placing& placing, PourTally* tally) {
+  const StartSpheres& spheres = placing.spheres;
+  PourBed bed = spheres.sizes ? PourBed(placing.container, spheres.sizes)
+                              : PourBed(placing.container, spheres.n);
   std::vector<Vec3> centres(spheres.n);
   std::size_t poured = 0;
-  for (const std::uint32_t sphere : pour_sequence(spheres, random)) {
-    throw_if_stopped(stop);
+  for (const std::uint32_t sphere : pour_sequence(spheres, placing.random)) {
+    throw_if_stopped(placing.stop);
     bed.next(sphere);
     const std::size_t turn = poured++;
     centres[sphere] = turn < spheres.placed.size() ? pour_placed(bed, spheres.placed[turn])
-                                                   : pour_one(bed, sphere, random, tally);
+                                                   : pour_one(bed, sphere, placing.random, tally);
     bed.add(centres[sphere]);
   }
   return centres;
+}
+
+std::optional<std::string> SteepestDescentPour::container_fault(const Container& container) const {
+  return gravity_fault(container);
+}
+
+std::vector<Vec3> SteepestDescentPour::place(const Placing& placing) const {
+  return pour(placing);
 }
 
 }  // namespace jostle::inline engine

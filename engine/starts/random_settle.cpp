@@ -67,25 +67,30 @@ std::vector<std::uint32_t> largest_first(const StartSpheres& spheres) {
 }  // namespace
 
 // The largest spheres are placed first, when there is most room.
-std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container,
-                          const StartSpheres& spheres, RandomStream& random) {
+std::optional<std::string> RandomSettle::container_fault(const Container& container) const {
+  return gravity_fault(container);
+}
+
+std::vector<Vec3> RandomSettle::place(const Placing& placing) const {
+  const Container& container = placing.container;
+  const StartSpheres& spheres = placing.spheres;
+  RandomStream& random = placing.random;
   constexpr int max_draws =
       2'000'000;  // most draws for one sphere; at 0.36 the last take 70 000 each
   const Boundary boundary(container);
-  if (!(settle.dilute_fraction > 0 && settle.dilute_fraction <= densest_dilution)) {
-    throw StartError("random settle: dilute_fraction is " + std::to_string(settle.dilute_fraction) +
+  if (!(dilute_fraction > 0 && dilute_fraction <= densest_dilution)) {
+    throw StartError("random settle: dilute_fraction is " + std::to_string(dilute_fraction) +
                      ", but non-overlapping random places are found only above 0 and up to " +
                      std::to_string(densest_dilution));
   }
-  if (!(settle.drop_height >= 0 && settle.drop_height <= highest_drop)) {
-    throw StartError("random settle: drop_height is " + std::to_string(settle.drop_height) +
+  if (!(drop_height >= 0 && drop_height <= highest_drop)) {
+    throw StartError("random settle: drop_height is " + std::to_string(drop_height) +
                      ", but a column's foot is 0 to " + std::to_string(highest_drop) +
                      " diameters above the floor");
   }
   Packing packing{container, std::vector<Vec3>(spheres.n), spheres.sizes};
-  const double height =
-      solid_volume(packing) / (footprint_area(container) * settle.dilute_fraction);
-  PlacedSpheres placed_spheres(packing, settle.drop_height + height);
+  const double height = solid_volume(packing) / (footprint_area(container) * dilute_fraction);
+  PlacedSpheres placed_spheres(packing, drop_height + height);
   for (const std::uint32_t sphere : largest_first(spheres)) {
     const double radius = packing.radius(sphere);
     const double margin_x = boundary.periodic_x ? 0 : radius;
@@ -94,7 +99,7 @@ std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container
     for (int draw = 0; draw < max_draws && !placed; ++draw) {
       const double x = margin_x + random.uniform() * (boundary.width_x - 2 * margin_x);
       const double y = margin_y + random.uniform() * (boundary.width_y - 2 * margin_y);
-      const double z = radius + settle.drop_height + random.uniform() * height;
+      const double z = radius + drop_height + random.uniform() * height;
       const Vec3 p = wrapped(boundary, {x, y, z});
       placed = placed_spheres.fits(sphere, p);
       if (placed) placed_spheres.place(sphere, p);
@@ -104,7 +109,7 @@ std::vector<Vec3> scatter(const RandomSettle& settle, const Container& container
                        " of " + std::to_string(spheres.n) + " in " + std::to_string(max_draws) +
                        " draws, the container is too narrow for this packing fraction; lower "
                        "dilute_fraction (now " +
-                       std::to_string(settle.dilute_fraction) + ")");
+                       std::to_string(dilute_fraction) + ")");
     }
   }
   return packing.centres;

@@ -14,107 +14,21 @@ namespace jostle::inline engine {
 
 namespace {
 
-struct Builder {
-  const Container& container;
-  const StartSpheres& spheres;
-  std::uint32_t n_spheres;
-  RandomStream& random;
-  const StopAsked& stop;
-  Packing* before_fitting;
-
-  std::vector<Vec3> operator()(const SteepestDescentPour&) const {
-    return pour(container, spheres, random, stop);
-  }
-  std::vector<Vec3> operator()(const FittedPour&) const {
-    const PeriodicBox sides{width_x(container), width_y(container)};
-    std::vector<Vec3> poured = pour(sides, StartSpheres{n_spheres}, random, stop);
-    if (before_fitting != nullptr) *before_fitting = {sides, poured};
-    return fit_pour(container, std::move(poured), random, stop);
-  }
-  std::vector<Vec3> operator()(const RandomSettle& start) const {
-    return scatter(start, container, spheres, random);
-  }
-  std::vector<Vec3> operator()(const Crystal& start) const {
-    return build_crystal(start, container, n_spheres);
-  }
-  std::vector<Vec3> operator()(const Grow& start) const {
-    return grow(start, std::get<FullyPeriodicBox>(container), spheres, random, stop);
-  }
-  std::vector<Vec3> operator()(const GivenPacking& start) const {
-    return check_given(start, container, spheres);
-  }
-};
-
-struct MixtureFault {
-  using Fault = std::optional<std::string>;
-  static Fault equal(const char* feature) {
-    return std::string(feature) +
-           " requires equal spheres of diameter 1: start a mixture with a steepest-descent pour, "
-           "random_settle or grow, or from a file that holds its packing";
-  }
-  Fault operator()(const SteepestDescentPour&) const { return std::nullopt; }
-  Fault operator()(const FittedPour&) const { return equal("a fitted pour"); }
-  Fault operator()(const RandomSettle&) const { return std::nullopt; }
-  Fault operator()(const Crystal&) const { return equal("a crystal"); }
-  Fault operator()(const Grow&) const { return std::nullopt; }
-  Fault operator()(const GivenPacking&) const { return std::nullopt; }
-};
-
 std::optional<double> solid_volume_of(const std::shared_ptr<const Sizes>& sizes) {
   if (!sizes) return std::nullopt;
   return solid_volume({PeriodicBox{}, std::vector<Vec3>(sizes->size()), sizes});
 }
 
-/// True if spheres may move before tap 0.
-struct MayMove {
-  bool operator()(const SteepestDescentPour&) const { return false; }
-  bool operator()(const FittedPour&) const { return true; }
-  bool operator()(const RandomSettle&) const { return true; }
-  bool operator()(const Crystal&) const { return false; }
-  bool operator()(const Grow&) const { return false; }
-  bool operator()(const GivenPacking&) const { return false; }
-};
-
-struct StartFault {
-  const Container& container;
-
-  using Fault = std::optional<std::string>;
-  Fault needs_gravity() const {
-    if (has_gravity(container)) return std::nullopt;
-    return "a fully_periodic container has neither floor nor gravity: start it with grow, with a "
-           "crystal or from a file";
-  }
-  Fault operator()(const SteepestDescentPour&) const { return needs_gravity(); }
-  Fault operator()(const RandomSettle&) const { return needs_gravity(); }
-  Fault operator()(const FittedPour&) const {
-    if (const auto fault = needs_gravity()) return fault;
-    const Boundary boundary(container);
-    if (!boundary.planes_x() && !boundary.planes_y()) {
-      return "a fitted pour is fitted between walls, and the sides \"" + name_of(container) +
-             "\" have no plane walls: take \"steepest_descent\"";
-    }
-    const auto fault = width_fault(PeriodicBox{width_x(container), width_y(container)});
-    if (!fault) return std::nullopt;
-    return "the pour before the fitting needs periodic sides, and their " + *fault +
-           " (widen the box or take \"steepest_descent\")";
-  }
-  Fault operator()(const Crystal& crystal) const {
-    const Boundary boundary(container);
-    if (boundary.periodic_x || boundary.periodic_y || !crystal.stretch) return std::nullopt;
-    return "stretch spaces rows out to a period, and there is none between walls: leave it out or "
-           "use periodic sides";
-  }
-  Fault operator()(const Grow&) const {
-    if (!has_gravity(container)) return std::nullopt;
-    return "spheres grow in a fully_periodic container only: elsewhere pour them";
-  }
-  Fault operator()(const GivenPacking&) const { return std::nullopt; }
-};
-
 }  // namespace
 
+std::optional<std::string> gravity_fault(const Container& container) {
+  if (has_gravity(container)) return std::nullopt;
+  return "a fully_periodic container has neither floor nor gravity: start it with grow, with a "
+         "crystal or from a file";
+}
+
 std::optional<std::string> start_fault(const Start& start, const Container& container) {
-  return std::visit(StartFault{container}, start);
+  return std::visit([&](const auto& chosen) { return chosen.container_fault(container); }, start);
 }
 
 std::optional<std::string> n_spheres_fault(const Start& start, const Container& container,
@@ -143,7 +57,7 @@ std::optional<std::string> n_spheres_fault(const Start& start, const Container& 
 }
 
 std::optional<std::string> settling_fault(const Start& start) {
-  if (std::visit(MayMove{}, start)) return std::nullopt;
+  if (std::visit([](const auto& chosen) { return chosen.may_move; }, start)) return std::nullopt;
   return "this start is at rest from the beginning: only random_settle and a fitted pour can be "
          "relaxed before tap 0";
 }
@@ -180,7 +94,11 @@ std::vector<std::uint32_t> pour_sequence(const StartSpheres& spheres, RandomStre
 }
 
 std::optional<std::string> mixture_fault(const Start& start) {
-  return std::visit(MixtureFault{}, start);
+  const char* equal = std::visit([](const auto& chosen) { return chosen.of_equal_spheres; }, start);
+  if (equal == nullptr) return std::nullopt;
+  return std::string(equal) +
+         " requires equal spheres of diameter 1: start a mixture with a steepest-descent pour, "
+         "random_settle or grow, or from a file that holds its packing";
 }
 
 Packing make_start(const Start& start, const Container& container, std::uint32_t n_spheres,
@@ -201,8 +119,9 @@ Packing make_start(const Start& start, const Container& container, const StartSp
         n_spheres_fault(start, container, spheres.n, solid_volume_of(sizes))}) {
     if (fault) throw StartError("start: " + *fault);
   }
-  const Builder build{container, spheres, spheres.n, random, stop, before_fitting};
-  return {container, std::visit(build, start), sizes};
+  const Placing placing{container, spheres, random, stop, before_fitting};
+  return {container, std::visit([&](const auto& chosen) { return chosen.place(placing); }, start),
+          sizes};
 }
 
 }  // namespace jostle::inline engine

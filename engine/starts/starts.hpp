@@ -17,11 +17,69 @@
 // How the packing begins, tap 0. Lengths in diameters.
 namespace jostle::inline engine {
 
+/// The order in which the spheres of a mixture are poured. Their numbers are those of the list of
+/// kinds whatever the order.
+enum class PourOrder { random, as_listed, large_first, small_first };
+inline constexpr NameTable<PourOrder, 4> pour_orders{{{"random", PourOrder::random},
+                                                      {"as_listed", PourOrder::as_listed},
+                                                      {"large_first", PourOrder::large_first},
+                                                      {"small_first", PourOrder::small_first}}};
+
+/// A sphere that is poured before all that have no place, from above (x, y).
+struct PlacedSphere {
+  std::uint32_t sphere = 0;
+  double x = 0, y = 0;  // diameters
+  bool operator==(const PlacedSphere&) const = default;
+};
+
+/// The spheres that a start places: `n` of diameter 1, or those of `sizes`.
+struct StartSpheres {
+  std::uint32_t n = 0;
+  std::shared_ptr<const Sizes> sizes = nullptr;  // null: equal spheres; else of n spheres
+  PourOrder order = PourOrder::random;           // order of spheres with sizes
+  std::vector<PlacedSphere> placed{};            // in the order in which they are poured
+};
+
+/// A start that cannot fit; what() gives the fault, the reason and what to do.
+class StartError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A start that was stopped under way: its work is lost.
+class StartStopped : public std::exception {
+ public:
+  const char* what() const noexcept override { return "the start was stopped"; }
+};
+
+/// True if a start under way is to stop; empty: never.
+using StopAsked = std::function<bool()>;
+
+/// What a start places, and where.
+struct Placing {
+  const Container& container;
+  const StartSpheres& spheres;
+  RandomStream& random;
+  const StopAsked& stop;
+  Packing* before_fitting = nullptr;  // receives what was poured before a fitting
+};
+
+// A start has, beside its fields: the words for it where a mixture is refused (`of_equal_spheres`,
+// null where it places several sizes), whether spheres may move before tap 0 (`may_move`), what a
+// container lacks for it, and its placing of the spheres. place() throws StartError and
+// StartStopped as make_start does, which has asked before for the faults of the start, the
+// container and the number of spheres.
+
 /// Spheres one by one from a random (x, y): each falls, rolls along the steepest descent and stops
 /// on three supports or on the floor. Philippe & Bideau 2001, sec. II. Poured directly into the
 /// container, whatever its sides. Spheres of a mixture roll on one another in the same way.
 struct SteepestDescentPour {
   bool operator==(const SteepestDescentPour&) const = default;
+
+  static constexpr const char* of_equal_spheres = nullptr;
+  static constexpr bool may_move = false;
+  std::optional<std::string> container_fault(const Container& container) const;
+  std::vector<Vec3> place(const Placing& placing) const;
 
   static constexpr Description description{"steepest_descent"};
   static constexpr auto fields() { return std::tuple{}; }
@@ -35,6 +93,11 @@ struct SteepestDescentPour {
 /// seam no longer meet. Other containers and widths of 2 diameters or less are an error.
 struct FittedPour {
   bool operator==(const FittedPour&) const = default;
+
+  static constexpr const char* of_equal_spheres = "a fitted pour";
+  static constexpr bool may_move = true;
+  std::optional<std::string> container_fault(const Container& container) const;
+  std::vector<Vec3> place(const Placing& placing) const;
 
   static constexpr Description description{"fitted"};
   static constexpr auto fields() { return std::tuple{}; }
@@ -51,6 +114,11 @@ struct RandomSettle {
   double dilute_fraction = 0.1;  // at most densest_dilution
   double drop_height = 0;        // drop height of the column's foot above the floor, diameters
   bool operator==(const RandomSettle&) const = default;
+
+  static constexpr const char* of_equal_spheres = nullptr;
+  static constexpr bool may_move = true;
+  std::optional<std::string> container_fault(const Container& container) const;
+  std::vector<Vec3> place(const Placing& placing) const;
 
   static constexpr Description description{
       "random_settle", "Random positions in a tall dilute box, then a relaxation without a tap",
@@ -81,6 +149,11 @@ struct Crystal {
   bool stretch = false;
   bool operator==(const Crystal&) const = default;
 
+  static constexpr const char* of_equal_spheres = "a crystal";
+  static constexpr bool may_move = false;
+  std::optional<std::string> container_fault(const Container& container) const;
+  std::vector<Vec3> place(const Placing& placing) const;
+
   static constexpr Description description{
       "crystal",
       "A close-packed crystal, filled layer by layer from the floor; between walls and in a "
@@ -97,6 +170,8 @@ struct Crystal {
 
 /// Sweeps of a growth, at most.
 inline constexpr std::uint64_t most_growth_sweeps = 1'000'000'000;
+/// Spheres that grow without order jam beyond this packing fraction.
+inline constexpr double densest_growth = 0.64;
 
 /// Random points whose diameters grow by Monte Carlo, those of a mixture by one factor, until the
 /// spheres fill the fully periodic box; at most packing fraction 0.64. From 0.61 on it grows slowly
@@ -104,6 +179,11 @@ inline constexpr std::uint64_t most_growth_sweeps = 1'000'000'000;
 struct Grow {
   std::uint64_t max_sweeps = 1'000'000;
   bool operator==(const Grow&) const = default;
+
+  static constexpr const char* of_equal_spheres = nullptr;
+  static constexpr bool may_move = false;
+  std::optional<std::string> container_fault(const Container& container) const;
+  std::vector<Vec3> place(const Placing& placing) const;
 
   static constexpr Description description{
       "grow", "Random points that grow to spheres; fully_periodic containers only", "Grow"};
@@ -120,6 +200,11 @@ struct GivenPacking {
   double most_overlap = 0;                       // diameters; above 0 for discrete elements alone
   std::shared_ptr<const Sizes> sizes = nullptr;  // null: all of diameter 1
   bool operator==(const GivenPacking&) const = default;
+
+  static constexpr const char* of_equal_spheres = nullptr;
+  static constexpr bool may_move = false;
+  std::optional<std::string> container_fault(const Container& container) const;
+  std::vector<Vec3> place(const Placing& placing) const;
 };
 
 using Start =
@@ -127,31 +212,6 @@ using Start =
 
 /// Packings of discrete elements may be given with such overlaps: deeper ones end a tap.
 inline constexpr double deepest_given_overlap = 0.1;
-/// Spheres that grow without order jam beyond this packing fraction.
-inline constexpr double densest_growth = 0.64;
-
-/// The order in which the spheres of a mixture are poured. Their numbers are those of the list of
-/// kinds whatever the order.
-enum class PourOrder { random, as_listed, large_first, small_first };
-inline constexpr NameTable<PourOrder, 4> pour_orders{{{"random", PourOrder::random},
-                                                      {"as_listed", PourOrder::as_listed},
-                                                      {"large_first", PourOrder::large_first},
-                                                      {"small_first", PourOrder::small_first}}};
-
-/// A sphere that is poured before all that have no place, from above (x, y).
-struct PlacedSphere {
-  std::uint32_t sphere = 0;
-  double x = 0, y = 0;  // diameters
-  bool operator==(const PlacedSphere&) const = default;
-};
-
-/// The spheres that a start places: `n` of diameter 1, or those of `sizes`.
-struct StartSpheres {
-  std::uint32_t n = 0;
-  std::shared_ptr<const Sizes> sizes = nullptr;  // null: equal spheres; else of n spheres
-  PourOrder order = PourOrder::random;           // order of spheres with sizes
-  std::vector<PlacedSphere> placed{};            // in the order in which they are poured
-};
 
 /// Returns the numbers of the spheres in the order in which they are poured, [n]: placed ones
 /// first, then the others in their order; of equal diameters the lower number first. Equal spheres
@@ -175,21 +235,6 @@ std::optional<std::string> n_spheres_fault(const Start& start, const Container& 
 
 /// Why it makes no sense to relax this start before tap 0: it is at rest. Nothing if it may move.
 std::optional<std::string> settling_fault(const Start& start);
-
-/// A start that cannot fit; what() gives the fault, the reason and what to do.
-class StartError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// A start that was stopped under way: its work is lost.
-class StartStopped : public std::exception {
- public:
-  const char* what() const noexcept override { return "the start was stopped"; }
-};
-
-/// True if a start under way is to stop; empty: never.
-using StopAsked = std::function<bool()>;
 
 /// Builds the starting packing, before any relaxation. Throws StartError where the start does not
 /// suit the container or the spheres do not fit, and StartStopped soon after `stop` returns true,
