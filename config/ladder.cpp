@@ -231,34 +231,37 @@ class RelaxationLadder : LadderMaker {
   }
 
   template <class AnyMove>
-  void largest_steps(const AnyMove& move, const char* name) {
-    for (const double factor : {0.5, 2.0}) {
-      AnyMove rung = move;
-      rung.max_step = rounded(move.max_step * factor);
-      const double longest = scene_.kinds.empty()
-                                 ? least_periodic_width
-                                 : std::min(least_periodic_width, 2 * range_of(scene_.kinds).least);
-      if (rung.max_step > longest) continue;
-      Relaxation relax = scene_.relax;
-      relax.move = rung;
-      add(PilotSetting::Part::step, finite_text("{} = {:.3g}", name, rung.max_step), relax);
+  void steps(const AnyMove& move) {
+    std::apply([&](const auto&... fields) { (halve_and_double(move, fields), ...); },
+               AnyMove::fields());
+    if constexpr (std::same_as<AnyMove, MetropolisMove>) adaptations(move);
+  }
+
+  template <class AnyMove, class Value, class Form>
+  void halve_and_double(const AnyMove& move, const Field<AnyMove, Value, Form>& number) {
+    if constexpr (std::same_as<Form, Number>) {
+      if (number.notes.ladder_symbol.empty()) return;
+      for (const double factor : {0.5, 2.0}) {
+        AnyMove rung = move;
+        double& value = rung.*number.member;
+        value = rounded(value * factor);
+        if (!number.form.range.contains(value) || rung.max_step > longest_step()) continue;
+        Relaxation relax = scene_.relax;
+        relax.move = rung;
+        add(PilotSetting::Part::step, finite_text("{} = {:.3g}", number.notes.ladder_symbol, value),
+            relax);
+      }
     }
   }
 
-  void steps(const PolarMove& move) {
-    largest_steps(move, "d_max");
-    for (const double factor : {0.5, 2.0}) {
-      PolarMove rung = move;
-      rung.theta0 = rounded(move.theta0 * factor);
-      if (rung.theta0 < least_theta0 || rung.theta0 > most_theta0) continue;
-      Relaxation relax = scene_.relax;
-      relax.move = rung;
-      add(PilotSetting::Part::step, finite_text("theta_0 = {:.3g}", rung.theta0), relax);
-    }
+  /// Steps may not pass the smallest sphere of a mixture.
+  double longest_step() const {
+    return scene_.kinds.empty()
+               ? step_length_range.high
+               : std::min(step_length_range.high, 2 * range_of(scene_.kinds).least);
   }
 
-  void steps(const MetropolisMove& move) {
-    largest_steps(move, "delta");
+  void adaptations(const MetropolisMove& move) {
     const auto adapted = [&](const char* name, std::optional<StepAdaptation> adaptation) {
       const bool skips = scene_.relax.sampler == Sampler::rejection_free;
       if (skips && adaptation && adaptation->base == AcceptanceBase::not_upward) return;

@@ -148,6 +148,8 @@ struct Notes {
   bool unless_default = false;     // written only where the value is not the default
   std::string_view title = {};
   std::string_view examples = {};  // a JSON list
+  std::string_view ladder_symbol =
+      {};  // of a number that `jostle cost` halves and doubles; empty: it does not
 };
 
 /// One key of a part. A part that is a single value has one field with an empty key. An optional

@@ -4,12 +4,16 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "engine/bed/container.hpp"
 #include "engine/fields.hpp"
 
-// How one sphere is displaced in a trial. Lengths in diameters, angles in radians.
+// How one sphere is displaced in a trial. Lengths in diameters, angles in radians. A move has,
+// beside its fields, what a container lacks for it and why the sampler that skips rejections does
+// not serve. Its policy is in kernel/move_policies.hpp.
 namespace jostle::inline engine {
 
 /// Law of the angle theta from the downward vertical: a density in theta itself (no sin theta) on
@@ -34,6 +38,9 @@ struct PolarMove {
   ThetaLaw law = ThetaLaw::gaussian;
   bool operator==(const PolarMove&) const = default;
 
+  std::optional<std::string> container_fault(const Container& container) const;
+  std::vector<std::string> skipping_faults() const;
+
   static constexpr Description description{
       "polar",
       "A downward step, accepted where nothing overlaps (Philippe & Bideau 2001). The default",
@@ -41,10 +48,11 @@ struct PolarMove {
   static constexpr auto fields() {
     return std::tuple{
         field("max_step", &PolarMove::max_step, Number{step_length_range, "diameters"},
-              "Largest length of a step"),
+              "Largest length of a step", {.ladder_symbol = "d_max"}),
         field("theta0", &PolarMove::theta0,
               Number{closed_range(least_theta0, most_theta0), "radians"},
-              "Width of the law of the angle from the downward vertical"),
+              "Width of the law of the angle from the downward vertical",
+              {.ladder_symbol = "theta_0"}),
         field("law", &PolarMove::law, word(theta_laws),
               "Density in theta on [0, pi/2]: exp(-(theta/theta0)^2), exp(-theta/theta0) or "
               "max(0, 1 - theta/theta0)")};
@@ -90,12 +98,15 @@ struct MetropolisMove {
   std::optional<StepAdaptation> adaptation = std::nullopt;  // absent: the step is fixed
   bool operator==(const MetropolisMove&) const = default;
 
+  std::optional<std::string> container_fault(const Container& container) const;
+  std::vector<std::string> skipping_faults() const;
+
   static constexpr Description description{
       "metropolis", "A displacement uniform in a cube (Rosato et al. 2010)", "Metropolis move"};
   static constexpr auto fields() {
     return std::tuple{
         field("max_step", &MetropolisMove::max_step, Number{step_length_range, "diameters"},
-              "Largest displacement along an axis"),
+              "Largest displacement along an axis", {.ladder_symbol = "delta"}),
         field("beta", &MetropolisMove::beta, or_word(Number{left_open_range(0, 1e300)}, "infinity"),
               "1/temperature in units of 1/(m g d); infinity: no move goes up"),
         field("adapt", &MetropolisMove::adaptation, or_word(Object<StepAdaptation>{}, "never"),

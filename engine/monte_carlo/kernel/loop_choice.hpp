@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <type_traits>
@@ -13,30 +12,6 @@
 
 // Chooses the typed loop for a container, a move and a sampler.
 namespace jostle::inline engine {
-
-// Calls act(box, policy) with the container and the move as the loop is compiled for them: a move
-// without a policy does not compile.
-template <class Act>
-struct WithTypes {
-  StreamKey key;
-  const Act& act;
-
-  template <class Box>
-  std::unique_ptr<TrialLoop> operator()(const Box& box, const PolarMove& move) const {
-    if constexpr (Box::shape().has_floor()) return act(box, Polar(move));
-    return nullptr;  // move_fault
-  }
-  template <class Box>
-  std::unique_ptr<TrialLoop> operator()(const Box& box, const MetropolisMove& move) const {
-    if constexpr (!Box::shape().has_floor()) {
-      return act(box, WithoutGravity(move));
-    } else if (move.beta != std::numeric_limits<double>::infinity()) {
-      return act(box, Metropolis(move, key));
-    } else {
-      return act(box, ZeroTemperature(move));
-    }
-  }
-};
 
 template <class Spheres>
 struct MakeExhaustive {
@@ -80,8 +55,15 @@ struct MakeRejectionFree {
 template <class Spheres>
 std::unique_ptr<TrialLoop> make_loop(const Container& container, const Move& move, StreamKey key,
                                      const Kernels& kernels, Sampler sampler) {
+  using Loop = std::unique_ptr<TrialLoop>;
   const auto choose = [&](const auto& make) {
-    return std::visit(WithTypes<std::decay_t<decltype(make)>>{key, make}, container, move);
+    return std::visit(
+        [&](const auto& box, const auto& chosen) {
+          using Box = std::decay_t<decltype(box)>;
+          return with_policy<Loop, Box>(
+              chosen, key, [&](auto policy) -> Loop { return make(box, std::move(policy)); });
+        },
+        container, move);
   };
   return sampler == Sampler::exhaustive ? choose(MakeExhaustive<Spheres>{key, kernels})
                                         : choose(MakeRejectionFree<Spheres>{key, kernels});

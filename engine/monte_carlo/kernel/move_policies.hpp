@@ -164,6 +164,24 @@ class Metropolis : public CubicStep {
   StreamKey key_;
 };
 
+/// Calls act(policy) with the policy of a move in a box of that type, and returns its result; null
+/// where the move does not suit the box (container_fault).
+template <class Result, class Box, class Act>
+Result with_policy(const PolarMove& move, StreamKey, const Act& act) {
+  if constexpr (Box::shape().has_floor()) return act(Polar(move));
+  return nullptr;
+}
+template <class Result, class Box, class Act>
+Result with_policy(const MetropolisMove& move, StreamKey key, const Act& act) {
+  if constexpr (!Box::shape().has_floor()) {
+    return act(WithoutGravity(move));
+  } else if (move.beta != std::numeric_limits<double>::infinity()) {
+    return act(Metropolis(move, key));
+  } else {
+    return act(ZeroTemperature(move));
+  }
+}
+
 static_assert(MovePolicy<Polar> && MovePolicy<WithoutGravity> && MovePolicy<ZeroTemperature> &&
               MovePolicy<Metropolis>);
 
