@@ -147,9 +147,8 @@ struct Notes {
   std::string_view required = {};  // content of a required key; empty: it may be absent
   bool unless_default = false;     // written only where the value is not the default
   std::string_view title = {};
-  std::string_view examples = {};  // a JSON list
-  std::string_view ladder_symbol =
-      {};  // of a number that `jostle cost` halves and doubles; empty: it does not
+  std::string_view examples = {};       // a JSON list
+  std::string_view ladder_symbol = {};  // symbol of a number that `jostle cost` varies
 };
 
 /// One key of a part. A part that is a single value has one field with an empty key. An optional

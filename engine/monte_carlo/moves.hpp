@@ -12,8 +12,8 @@
 #include "engine/fields.hpp"
 
 // How one sphere is displaced in a trial. Lengths in diameters, angles in radians. A move has,
-// beside its fields, what a container lacks for it and why the sampler that skips rejections does
-// not serve. Its policy is in kernel/move_policies.hpp.
+// beside its fields, the reasons why a container or the sampler that skips rejections does not suit
+// it. Its policy is in kernel/move_policies.hpp.
 namespace jostle::inline engine {
 
 /// Law of the angle theta from the downward vertical: a density in theta itself (no sin theta) on

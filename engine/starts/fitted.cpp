@@ -9,8 +9,8 @@ namespace jostle::inline engine {
 
 namespace {
 
-/// Takes the centres that overlap a wall out and pours them again in their order. The others stay
-/// where they were poured, also those of the bulk that lost a support that straddled a wall.
+/// Pours the centres that overlap a wall again, in their order. No other sphere moves, even if it
+/// lost a support that straddled a wall.
 std::vector<Vec3> fit_pour(const Container& container, std::vector<Vec3> poured,
                            RandomStream& random, const StopAsked& stop) {
   const auto n_spheres = static_cast<std::uint32_t>(poured.size());

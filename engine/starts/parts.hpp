@@ -10,7 +10,7 @@
 #include "engine/starts/pour_bed.hpp"
 #include "engine/starts/starts.hpp"
 
-// What starts share.
+// Functions that several starts call.
 namespace jostle::inline engine {
 
 /// Work of a pour. A drop whose path is degenerate is drawn anew.

@@ -55,7 +55,7 @@ class StartStopped : public std::exception {
 /// True if a start under way is to stop; empty: never.
 using StopAsked = std::function<bool()>;
 
-/// What a start places, and where.
+/// Arguments of a start: spheres, container, random numbers.
 struct Placing {
   const Container& container;
   const StartSpheres& spheres;
@@ -64,11 +64,11 @@ struct Placing {
   Packing* before_fitting = nullptr;  // receives what was poured before a fitting
 };
 
-// A start has, beside its fields: the words for it where a mixture is refused (`of_equal_spheres`,
-// null where it places several sizes), whether spheres may move before tap 0 (`may_move`), what a
-// container lacks for it, and its placing of the spheres. place() throws StartError and
-// StartStopped as make_start does, which has asked before for the faults of the start, the
-// container and the number of spheres.
+// A start has, beside its fields: its name where a mixture is refused (`of_equal_spheres`, null
+// where it places several sizes), whether spheres may move before tap 0 (`may_move`), the reason
+// why a container does not suit it, and place(), which places the spheres. place() throws
+// StartError and StartStopped as make_start does. make_start has checked the start, the container
+// and the number of spheres before.
 
 /// Spheres one by one from a random (x, y): each falls, rolls along the steepest descent and stops
 /// on three supports or on the floor. Philippe & Bideau 2001, sec. II. Poured directly into the

@@ -18,7 +18,7 @@ MAY_INCLUDE = {
     "ensemble": {"engine", "structure", "fitting", "ensemble"},
     "config": {"engine", "structure", "ensemble", "config"},
     "results": {"engine", "structure", "ensemble", "results"},
-    "bench": {"engine", "structure", "fitting", "ensemble", "config", "bench", "tests"},
+    "bench": {"engine", "structure", "fitting", "ensemble", "config", "results", "bench", "tests"},
     "study": {"engine", "structure", "fitting", "ensemble", "config", "results", "study"},
     "sdk": {"engine", "structure", "fitting", "ensemble", "config", "results", "study"},
     "cli": {"engine", "structure", "fitting", "ensemble", "bench", "config", "results", "study",
