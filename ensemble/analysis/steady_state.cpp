@@ -8,11 +8,14 @@
 #include <numeric>
 
 #include "ensemble/statistics/finite_text.hpp"
-#include "fitting/intervals/dependence.hpp"
+#include "ensemble/statistics/mean_error.hpp"
 
 namespace jostle::inline ensemble {
 
 namespace {
+
+// Fewer independent values of one realization give no honest error, and no steady state.
+constexpr double fewest_for_error = 4, fewest_for_verdict = 10;
 
 // The reason why the taps cannot decide; empty if they can.
 std::string reasons_for_doubt(const SteadyState& state) {
@@ -34,7 +37,7 @@ std::string reasons_for_doubt(const SteadyState& state) {
     add(finite_text("{} taps are fewer than {} autocorrelation times ({:.3g} taps)", state.n_taps,
                     SteadyStateTest::fewest_times, state.autocorrelation.time));
   }
-  if (state.realizations == 1 && !state.error.known()) {
+  if (state.realizations == 1 && state.independent_values < fewest_for_verdict) {
     add("the one realization remembers for as long as the taps");
   }
   return reasons;
@@ -54,25 +57,6 @@ ErrorOf sigma_error(const SteadyState& state, const Moments& variances) {
                              ? state.sigma * std::sqrt((1 + 2 * memory.squares) / (2 * n))
                              : state.sigma * variances.standard_error() / (2 * variances.mean());
   return {std::hypot(scatter, by_time), dof};
-}
-
-// For the mean of one series, by the memory that is likeliest; none where that leaves fewer than
-// ten independent values.
-ErrorOf error_of_one(const std::vector<double>& values) {
-  constexpr double fewest = 10;
-  constexpr double evidence =
-      2;  // evidence required for a memory: a mean is not lost by a memory that does not exist
-  const auto n = static_cast<Eigen::Index>(values.size());
-  std::vector<double> places(values.size());
-  std::iota(places.begin(), places.end(), 0.0);
-  Eigen::VectorXd residuals = Eigen::Map<const Eigen::VectorXd>(values.data(), n);
-  Moments all;
-  for (const double value : values) all.add(value);
-  residuals.array() -= all.mean();
-  if (all.sigma() == 0) return {0, static_cast<double>(n - 1)};
-  const MemoryErrors found =
-      memory_errors(places, Eigen::MatrixXd::Ones(n, 1), residuals, false, evidence);
-  return {std::sqrt(found.covariance(0, 0)), found.dof < fewest ? 0 : found.dof};
 }
 
 // Means of neighbouring taps, at most 4096: an error of the mean needs no more.
@@ -136,12 +120,15 @@ SteadyState SteadyStateTest::result() const {
   const auto realizations = static_cast<double>(state.realizations);
   const bool single = state.realizations == 1;
   if (single) {
-    state.error = error_of_one(only_);
-    if (!state.error.known()) {
-      state.error.error = std::fmax(state.error.error, state.blocking.error());
+    const MeanError found = mean_error(only_);
+    state.error = found.error;
+    state.independent_values = found.independent_values;
+    if (state.independent_values < fewest_for_error) {
+      state.error = {std::fmax(found.error.error, state.blocking.error()), 0};
     }
   } else {
     state.error = {means_.standard_error(), realizations - 1};
+    state.independent_values = std::numeric_limits<double>::quiet_NaN();
   }
   state.realization_sigma = single ? std::numeric_limits<double>::quiet_NaN()
                                    : means_.standard_error() * std::sqrt(realizations);

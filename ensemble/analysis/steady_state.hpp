@@ -20,10 +20,11 @@ enum class Verdict { reached, not_reached, cannot_decide };
 struct SteadyState {
   std::size_t n_taps = 0, realizations = 0;
   double value = 0;  // mean over taps and realizations
-  /// With two or more realizations, their standard error. For one, by its memory, as for fits of
-  /// one curve (fitting/intervals/memory.hpp); where that is as long as the taps, a lower bound
-  /// without degrees of freedom.
+  /// With two or more realizations, their standard error. For one, averaged over the memories that
+  /// its taps allow (statistics/mean_error.hpp); where these leave fewer than four independent
+  /// values, a lower bound without degrees of freedom.
   ErrorOf error{};
+  double independent_values = 0;  // see MeanError; NaN for several realizations
   /// Deviation of single taps about the steady value of their realization; a lower bound where the
   /// autocorrelation time is one.
   double sigma = 0;

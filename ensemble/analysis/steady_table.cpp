@@ -63,19 +63,20 @@ SteadyState in_units_of(const AnalysedSeries& series, SteadyState state) {
 
 Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
   const bool single = state.realizations == 1;
+  const bool has_blocked_error = state.blocking.plateau && state.error.known();
   const AutocorrelationTime& time = state.autocorrelation;
   Table table{.name = "steady/" + series.observable, .axes = {}, .quantities = {}, .notes = {}};
   table.quantities = {
       single_value("value", state.value, series.units, "mean over taps and realizations"),
       single_value("value_error", error_or_nan(state.error), series.units,
-                   single
-                       ? "standard error by the memory of the realization; - where that is too long"
-                       : "standard error over realizations"),
+                   !single               ? "standard error over realizations"
+                   : state.error.known() ? "error from the memories that the taps of the one "
+                                           "realization allow, for Student's t of value_dof"
+                                         : "none: fewer than four independent values"),
       single_value("value_dof", state.error.dof, "1", "degrees of freedom of value_error"),
       single_value("blocked_error", state.blocking.error(), series.units,
-                   state.blocking.plateau
-                       ? "standard error by blocking, realizations pooled"
-                       : lower_bound + " of the error: blocking found no plateau",
+                   has_blocked_error ? "standard error by blocking, realizations pooled"
+                                     : lower_bound + " of the error: too few blocks for the memory",
                    flyvbjerg_petersen),
       single_value("sigma", state.sigma, series.units,
                    time.found()
@@ -104,7 +105,7 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
   add_errors(table, "halves_difference", state.trend.halves, series.units);
   table.quantities.push_back(
       single_value("drift_p", state.trend.tests > 0 ? state.trend.p : not_a_number, "1",
-                   "of no drift, the tests of line and halves together (Bonferroni)"));
+                   "p-value of no drift, the tests of line and halves together (Bonferroni)"));
   table.quantities.push_back(single_value(
       "drift_detectable", state.trend.tests > 0 ? state.trend.detectable : not_a_number,
       series.units,

@@ -120,11 +120,11 @@ double level_weight(const std::vector<double>& weights, const Eigen::MatrixXd& j
 }
 
 MemoryErrors memory_errors(const std::vector<double>& t, const Eigen::MatrixXd& jacobian,
-                           const Eigen::VectorXd& residuals, bool sigma_given, double evidence) {
+                           const Eigen::VectorXd& residuals, bool sigma_given) {
   const Influence found = influence(jacobian);
   const auto independent = static_cast<double>(residuals.size() - jacobian.cols());
   const double unit = sigma_given ? 1 : residuals.squaredNorm() / independent;
-  Memory memory = residual_memory(t, residuals, found.basis, evidence);
+  Memory memory = residual_memory(t, residuals, found.basis);
   // Residuals below the errors given show no noise, and so no memory of it.
   const double share = std::min(memory.variance / unit, sigma_given ? 1.0 : infinite);
   Eigen::MatrixXd scatter = share * found.basis.transpose() * correlated(t, memory, found.basis);

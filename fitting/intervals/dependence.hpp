@@ -58,13 +58,11 @@ double level_weight(const std::vector<double>& weights, const Eigen::MatrixXd& j
 /// [n_points], ascending; jacobian, residuals: [n_points], weighted alike. `sigma_given`: the
 /// variance of a residual is 1, and only their correlation is taken from them, where they are no
 /// smaller. Without a memory that makes errors longer, given errors are known: dof is infinite.
-/// `evidence`: of residual_memory().
 struct MemoryErrors : DependentErrors {
   Memory memory;
 };
 MemoryErrors memory_errors(const std::vector<double>& t, const Eigen::MatrixXd& jacobian,
-                           const Eigen::VectorXd& residuals, bool sigma_given,
-                           double evidence = 10);
+                           const Eigen::VectorXd& residuals, bool sigma_given);
 
 /// Degrees of freedom of clustered errors where realizations are missing at some t: those that stay
 /// carry more of a parameter than those that leave, and its variance is estimated from fewer than

@@ -85,7 +85,8 @@ Eigen::MatrixXd correlated(const std::vector<double>& t, const Memory& memory,
 }
 
 Memory residual_memory(const std::vector<double>& t, const Eigen::VectorXd& residuals,
-                       const Eigen::MatrixXd& basis, double evidence) {
+                       const Eigen::MatrixXd& basis) {
+  constexpr double evidence = 10;  // twice the gain of the likelihood
   const std::vector<double> gaps = gaps_of(t);
   const auto n = static_cast<double>(t.size());
   const Likelihood white = restricted(gaps, 0, 0, residuals, basis);

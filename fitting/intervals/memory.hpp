@@ -18,12 +18,12 @@ struct Memory {
 
 /// By restricted maximum likelihood (Patterson & Thompson 1971, doi:10.1093/biomet/58.3.545), which
 /// allows for what the parameters have taken up. Independence is kept unless twice the gain of the
-/// likelihood by a memory is above `evidence`: chance gives 10 to fewer than 1 of 100 curves of
-/// white noise and 2 to 37. A memory that is not there opens intervals of short curves; one that is
-/// overlooked makes them too short. t: [n], ascending; residuals: [n]; basis: [n, n_variables],
-/// orthonormal columns that span those of the Jacobian; n > n_variables.
+/// likelihood by a memory is above 10, which chance gives to fewer than 1 of 100 curves of white
+/// noise: a memory that is not there opens intervals of short curves; one that is overlooked makes
+/// them too short. t: [n], ascending; residuals: [n]; basis: [n, n_variables], orthonormal columns
+/// that span those of the Jacobian; n > n_variables.
 Memory residual_memory(const std::vector<double>& t, const Eigen::VectorXd& residuals,
-                       const Eigen::MatrixXd& basis, double evidence = 10);
+                       const Eigen::MatrixXd& basis);
 
 /// The correlation matrix of such noise times the columns of `vectors` [n, any].
 Eigen::MatrixXd correlated(const std::vector<double>& t, const Memory& memory,

@@ -143,33 +143,70 @@ void check_two_time_scales(std::size_t n_taps, std::size_t ensembles) {
   std::fflush(stdout);
 }
 
+/// AR(1) of deviation 1 and this autocorrelation time, white noise of deviation `white` beside it.
+std::vector<double> remembering(double time, double white, std::size_t n_taps, std::size_t e) {
+  const double rho = (2 * time - 1) / (2 * time + 1), scale = std::sqrt(1 - rho * rho);
+  std::vector<double> series = synthetic::autoregressive(rho, n_taps, 51000 + e);
+  synthetic::Gaussian noise(71000 + e);
+  for (double& x : series) x = scale * x + white * noise();
+  return series;
+}
+
 /// How often the interval of one realization's value, where it is given, holds the truth.
-void check_one_realization(double rho, std::size_t n_taps, std::size_t ensembles) {
-  std::size_t given = 0, at_68 = 0, at_95 = 0;
+struct ValueCounts {
+  std::size_t ensembles = 0, given = 0, at_68 = 0, at_95 = 0;
+  std::size_t below_bound = 0;  // half the 68 % interval is below the error by blocking
+
+  double percent(std::size_t n) const {
+    return given == 0 ? 0 : 100 * static_cast<double>(n) / static_cast<double>(given);
+  }
+};
+
+ValueCounts value_counts(double time, double white, std::size_t n_taps, std::size_t ensembles) {
+  ValueCounts counts{.ensembles = ensembles};
   for (std::size_t e = 0; e < ensembles; ++e) {
     SteadyStateTest test;
-    test.add(synthetic::autoregressive(rho, n_taps, 51000 + e));
+    test.add(remembering(time, white, n_taps, e));
     const SteadyState state = test.result();
     if (!state.error.known()) continue;
-    ++given;
-    const double deviation = std::abs(state.value);
-    at_68 +=
-        deviation <= state.error.error * student_two_sided(interval_levels[0], state.error.dof);
-    at_95 +=
-        deviation <= state.error.error * student_two_sided(interval_levels[1], state.error.dof);
+    ++counts.given;
+    const auto half_width = [&](double level) {
+      return state.error.error * student_two_sided(level, state.error.dof);
+    };
+    counts.at_68 += std::abs(state.value) <= half_width(interval_levels[0]);
+    counts.at_95 += std::abs(state.value) <= half_width(interval_levels[1]);
+    counts.below_bound += half_width(interval_levels[0]) < state.blocking.error();
   }
-  const auto share = [&](std::size_t n) {
-    return given == 0 ? 0 : static_cast<double>(n) / static_cast<double>(given);
-  };
-  fmt::print("{:>5} {:>5} | {:5.1f} | {:5.1f} {:5.1f}\n", n_taps, rho,
-             100 * static_cast<double>(given) / static_cast<double>(ensembles), 100 * share(at_68),
-             100 * share(at_95));
-  CAPTURE(rho, n_taps, given);
-  // Where nine in ten are refused, the others are those that a short memory was read into.
-  if (2 * given < ensembles) return;
-  CHECK(share(at_68) >= 0.6 - 3 * deviation(0.6, given));
-  CHECK(share(at_68) <= 0.8 + 3 * deviation(0.8, given));
-  CHECK(share(at_95) >= 0.9 - 3 * deviation(0.9, given));
+  return counts;
+}
+
+void check_one_realization(const std::vector<std::size_t>& lengths,
+                           const std::vector<double>& shares, std::size_t ensembles) {
+  fmt::print("\n taps white tau/n | given | 68 %  95 % | below blocking\n");
+  for (const std::size_t n_taps : lengths) {
+    for (const double white : {0.0, 1.0}) {
+      for (const double share : shares) {
+        const double time = std::max(0.5, share * static_cast<double>(n_taps));
+        const ValueCounts counts = value_counts(time, white, n_taps, ensembles);
+        const double given =
+            100 * static_cast<double>(counts.given) / static_cast<double>(ensembles);
+        fmt::print("{:>5} {:>5} {:>5} | {:5.1f} | {:5.1f} {:5.1f} | {:5.1f}\n", n_taps, white,
+                   share, given, counts.percent(counts.at_68), counts.percent(counts.at_95),
+                   counts.percent(counts.below_bound));
+        CAPTURE(n_taps, white, share, given);
+        // Longer memories of AR(1) are seldom given an error that misses.
+        const auto misses = static_cast<double>(counts.given - counts.at_95);
+        if (white == 0 && share <= 0.2) CHECK(misses <= 0.1 * static_cast<double>(ensembles));
+        if (share > 0.05) continue;
+        CHECK(given >= 90);
+        CHECK(counts.percent(counts.at_68) >= 60 - 300 * deviation(0.6, counts.given));
+        CHECK(counts.percent(counts.at_68) <= 76 + 300 * deviation(0.76, counts.given));
+        CHECK(counts.percent(counts.at_95) >= 90 - 300 * deviation(0.9, counts.given));
+        CHECK(counts.percent(counts.at_95) <= 98 + 300 * deviation(0.98, counts.given));
+      }
+    }
+  }
+  std::fflush(stdout);
 }
 
 /// How often sigma and the autocorrelation time of AR(1) are within their intervals, where these
@@ -253,23 +290,15 @@ void check_memories(const std::vector<std::size_t>& lengths, std::size_t ensembl
   std::fflush(stdout);
 }
 
-constexpr const char* one_heading = "\n taps   rho | given | 68 %  95 %\n";
-
 }  // namespace
 
 TEST_CASE("The value of one realization has an interval that holds it, or none", "[statistics]") {
-  fmt::print(one_heading);
-  for (const double rho : {0.0, 0.8, 0.9, 0.97}) check_one_realization(rho, 300, 100);
+  check_one_realization({75, 300}, {0, 0.005, 0.02, 0.05, 0.1, 0.2}, 200);
 }
 
 TEST_CASE("The value of one realization has an interval that holds it, of any length",
           "[nightly]") {
-  fmt::print(one_heading);
-  for (const std::size_t n_taps : {300, 1000, 4000}) {
-    for (const double rho : {0.0, 0.5, 0.8, 0.9, 0.97, 0.99}) {
-      check_one_realization(rho, n_taps, 300);
-    }
-  }
+  check_one_realization({75, 300, 2000}, {0, 0.005, 0.02, 0.05, 0.1, 0.2, 0.5}, 400);
 }
 
 TEST_CASE("Intervals of sigma and of the autocorrelation time hold them, or are not given",
@@ -277,7 +306,8 @@ TEST_CASE("Intervals of sigma and of the autocorrelation time hold them, or are 
   check_memories({75}, 100);
 }
 
-TEST_CASE("Intervals of sigma and of the autocorrelation time hold them, of any length", "[nightly]") {
+TEST_CASE("Intervals of sigma and of the autocorrelation time hold them, of any length",
+          "[nightly]") {
   check_memories({75, 300, 1000}, 400);
 }
 
