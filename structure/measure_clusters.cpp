@@ -48,8 +48,8 @@ Measurement measure_part(MeasuredPacking& measured, const ClustersSettings& sett
        .places = "cells",
        .values = per_cell,
        .units = "sphere volumes^2",
-       .long_name = "variance of the volume of a cluster over its cells and over "
-                    "shared_cells; the same for all sizes where cells are independent",
+       .long_name = "variance of the volume of a cluster, divided by its number of cells and by "
+                    "shared_cells; equal for all sizes where cells are independent",
        .source = "Lechenault et al. 2006, doi:10.1088/1742-5468/2006/07/P07009",
        .beyond = not_a_number,
        .with_change = true,
@@ -85,7 +85,7 @@ Measurement measure_part(MeasuredPacking& measured, const ClustersSettings& sett
       {.name = "mean_volume",
        .values = {found.mean.front()},
        .units = "sphere volumes",
-       .long_name = "volume of a whole cell"}};
+       .long_name = "mean volume of the whole cells of the region"}};
   return measurement;
 }
 

@@ -47,18 +47,25 @@ class Means {
 
 struct OrderColumn {
   std::string_view name, at_height;
-  std::string_view long_name, source;
+  std::string_view of_region, of_bin;
+  std::string_view source;
 };
 
 constexpr const char* steinhardt = "Steinhardt et al. 1983, doi:10.1103/PhysRevB.28.784";
 constexpr const char* stukowski = "Stukowski 2012, doi:10.1088/0965-0393/20/4/045021";
 constexpr OrderColumn order_columns[] = {
-    {"fcc", "fcc_at_height", "fraction of spheres with fcc order", stukowski},
-    {"hcp", "hcp_at_height", "fraction of spheres with hcp order", stukowski},
-    {"disordered", "disordered_at_height", "fraction of spheres with neither", stukowski},
-    {"q4", "q4_at_height", "mean q4 of the 12 nearest neighbours", steinhardt},
-    {"q6", "q6_at_height", "mean q6 of the 12 nearest neighbours", steinhardt},
-    {"w6", "w6_at_height", "mean w6 of the 12 nearest neighbours", steinhardt}};
+    {"fcc", "fcc_at_height", "fraction of the region's spheres with fcc order",
+     "fraction of a bin's spheres with fcc order", stukowski},
+    {"hcp", "hcp_at_height", "fraction of the region's spheres with hcp order",
+     "fraction of a bin's spheres with hcp order", stukowski},
+    {"disordered", "disordered_at_height", "fraction of the region's spheres with neither",
+     "fraction of a bin's spheres with neither", stukowski},
+    {"q4", "q4_at_height", "mean q4 of the 12 nearest neighbours, region's spheres that have 12",
+     "mean q4 of the 12 nearest neighbours, a bin's spheres that have 12", steinhardt},
+    {"q6", "q6_at_height", "mean q6 of the 12 nearest neighbours, region's spheres that have 12",
+     "mean q6 of the 12 nearest neighbours, a bin's spheres that have 12", steinhardt},
+    {"w6", "w6_at_height", "mean w6 of the 12 nearest neighbours, region's spheres that have 12",
+     "mean w6 of the 12 nearest neighbours, a bin's spheres that have 12", steinhardt}};
 constexpr std::size_t n_order_columns = std::size(order_columns), first_bond_column = 3;
 
 /// Neighbours of a mixture within a cut, by kinds.
@@ -157,10 +164,10 @@ Measurement measure_part(MeasuredPacking& measured, const CoordinationSettings& 
   for (const unsigned number : in_region) mean += number;
   const std::vector<double> histogram = shares(neighbour_histogram(in_region));
   Measurement measurement;
-  measurement.places = {
-      {"cut", curve.cuts, measured.packing.sizes ? "sum of radii" : "diameter",
-       "centres at most so far away count"},
-      {"neighbours", whole_numbers(histogram.size()), "1", "other centres within the first cut"}};
+  measurement.places = {{"cut", curve.cuts, measured.packing.sizes ? "sum of radii" : "diameter",
+                         "centres at most so far away count"},
+                        {"neighbours", whole_numbers(histogram.size()), "1",
+                         "other centres within the setting `cut`"}};
   measurement.quantities = {
       {.name = "n_c_of_cut",
        .places = "cut",
@@ -173,7 +180,7 @@ Measurement measure_part(MeasuredPacking& measured, const CoordinationSettings& 
        .source = "Rosato et al. 2010, fig. 8"},
       {.name = "n_c",
        .values = {mean / static_cast<double>(in_region.size())},
-       .long_name = "mean number of neighbours, over the region",
+       .long_name = "mean number of other centres within the setting `cut`, over the region",
        .source = "Rosato et al. 2010, fig. 3"},
       {.name = "n_c_all",
        .values = {all / static_cast<double>(numbers.size())},
@@ -317,16 +324,16 @@ Measurement measure_part(MeasuredPacking& measured, const OrderSettings& setting
   measurement.places = {{"height", middles_of_bins(n_bins, settings.bin_width), "diameter",
                          "height above the floor, middle of a bin"}};
   for (std::size_t c = 0; c < n_order_columns; ++c) {
-    const auto& [name, at_height, long_name, source] = order_columns[c];
+    const auto& [name, at_height, of_region_name, of_bin_name, source] = order_columns[c];
     measurement.quantities.push_back({.name = std::string(at_height),
                                       .places = "height",
                                       .values = by_height[c].values(),
-                                      .long_name = long_name,
+                                      .long_name = of_bin_name,
                                       .source = source,
                                       .beyond = not_a_number});
     measurement.quantities.push_back({.name = std::string(name),
                                       .values = of_region[c].values(),
-                                      .long_name = long_name,
+                                      .long_name = of_region_name,
                                       .source = source});
   }
   if (Boundary(measured.packing.container).has_floor()) {

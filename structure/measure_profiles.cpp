@@ -140,11 +140,12 @@ Measurement measure_part(MeasuredPacking& measured, const ProfileSettings& setti
                                     .units = "1/R",
                                     .long_name = "minus the slope of the smoothed profile",
                                     .source = "Philippe & Bideau 2001, fig. 8"});
-  measurement.quantities.push_back({.name = "alpha_line_error",
-                                    .values = {found.error},
-                                    .units = "1/R",
-                                    .long_name = "of alpha, from the scatter about the line",
-                                    .with_error = false});
+  measurement.quantities.push_back(
+      {.name = "alpha_line_error",
+       .values = {found.error},
+       .units = "1/R",
+       .long_name = "standard error of alpha of one packing, from the scatter about the line",
+       .with_error = false});
   if (!found.reason.empty()) measurement.notes.emplace_back("alpha", found.reason);
   if (measured.region.high > measured.region.low) {
     measurement.quantities.push_back(
@@ -193,12 +194,13 @@ Measurement measure_part(MeasuredPacking& measured, const LayersSettings& settin
        .places = "layer_height",
        .values = layer_heights,
        .units = "diameter",
-       .long_name = "mean height of the centres near that place of the layer",
+       .long_name =
+           "mean height of the centres within 0.3 of the place that the layer below points to",
        .beyond = not_a_number},
       {.name = "filling",
        .places = "layer_height",
        .values = filling,
-       .long_name = "centres between mid-planes over those of a full layer"},
+       .long_name = "centres between the mid-planes of found heights over those of a full layer"},
       {.name = "share",
        .places = "layer_height",
        .values = share,

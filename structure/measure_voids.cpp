@@ -139,15 +139,16 @@ Measurement measure_part(MeasuredPacking& measured, const VoronoiSettings& setti
   const double free_mean = mean_of(inner.free_volumes);
   const double sigma = zero_within_rounding(deviation_of(inner.free_volumes, free_mean), free_mean);
   const double above_least = free_mean - least_free_volume;
-  add_single("mean_faces", mean_of(inner.faces), "faces a cell", measurement,
+  add_single("mean_faces", mean_of(inner.faces),
+             "mean number of faces per cell, without the tiniest", measurement,
              "Rosato et al. 2010, fig. 8");
-  add_single("mean_volume", mean_of(inner.volumes), "volume of a cell", measurement, "",
+  add_single("mean_volume", mean_of(inner.volumes), "mean volume of a cell", measurement, "",
              "diameters^3");
-  add_single("mean_free_volume", free_mean, "free volume of a cell", measurement,
+  add_single("mean_free_volume", free_mean, "mean free volume of a cell", measurement,
              "Rosato et al. 2010, fig. 9", "sphere volumes");
-  add_single("sigma_free_volume", sigma, "deviation of the free volumes of cells", measurement, "",
-             "sphere volumes");
-  add_single("mean_local_fraction", mean_of(inner.fractions), "local packing fraction",
+  add_single("sigma_free_volume", sigma, "population deviation (1/n) of the free volumes of cells",
+             measurement, "", "sphere volumes");
+  add_single("mean_local_fraction", mean_of(inner.fractions), "mean local packing fraction",
              measurement);
   const bool varies = sigma > 1e-6 * free_mean;  // not so in a perfect crystal
   if (!measured.packing.sizes)
@@ -155,8 +156,8 @@ Measurement measure_part(MeasuredPacking& measured, const VoronoiSettings& setti
                "shape of the k-gamma distribution by its moments: (mean - least)^2 / variance, the "
                "least cell being a regular dodecahedron",
                measurement, "Aste & Di Matteo 2008, doi:10.1103/PhysRevE.77.021309");
-  add_single("n_cells", static_cast<double>(inner.volumes.size()), "whole cells of the region",
-             measurement);
+  add_single("n_cells", static_cast<double>(inner.volumes.size()),
+             "cells of the region: whole ones, with `cut_cells` all", measurement);
   measurement.quantities.back().is_compared = false;
   const VoronoiCells& cells = measured.voronoi();
   const double lid = surface_height(measured.packing);
@@ -221,7 +222,8 @@ Measurement measure_part(MeasuredPacking& measured, const PoresSettings& setting
   measurement.quantities.back().is_compared = false;
   add_single("nu", mean_pore_volume(found), "mean of xi^3", measurement,
              "Philippe & Bideau 2001, sec. V", "sphere volumes");
-  add_single("mean_touched", touched / number, "spheres that a pore touches", measurement);
+  add_single("mean_touched", touched / number, "mean number of spheres that a pore touches",
+             measurement);
   add_single("tetrahedral", tetrahedral / number,
              "fraction of pores at xi = (3/2)^(1/2) - 1, within the tolerance", measurement,
              "Philippe & Bideau 2001, sec. V");
@@ -257,7 +259,7 @@ Measurement measure_part(MeasuredPacking& measured, const VoidSettings& settings
       {.name = "p0_points_error",
        .places = "sigma",
        .values = found.error,
-       .long_name = "of one packing's p0, from its random points",
+       .long_name = "standard error of one packing's p0 from its random points; 0 up to sigma = 1",
        .beyond = not_a_number,
        .with_error = false},
       {.name = "p0_gotoh",

@@ -136,7 +136,7 @@ void add_loops(const std::vector<Loop>& all, const std::string& strength_units,
       "integral over strength of the later branch less the earlier");
   add("area_error", std::move(errors), units, "standard error over realizations");
   add("area_dof", std::move(dof), "1", "degrees of freedom of area_error");
-  add("area_p", std::move(p), "1", "of no area, this loop alone, Student's t");
+  add("area_p", std::move(p), "1", "p-value of no area, this loop alone, Student's t");
   add("area_p_corrected", std::move(corrected), "1",
       "the same for all loops together, Holm 1979, Scand. J. Statist. 6, 65");
   add("area_verdict", std::move(statements), "1", "whether the branches differ");

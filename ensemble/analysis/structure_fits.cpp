@@ -186,12 +186,13 @@ void add_law(const FittedLaw& law, const PartPackings& part, Table& table) {
     if (!law.units[j].empty()) add_parameter(law, *model, j, taps, table);
   }
   if (law.of_counts) {
-    table.quantities.push_back({law.prefix + "_p",
-                                {"tap"},
-                                std::move(p),
-                                "1",
-                                "chance that counts of the law itself lie so far from it",
-                                ""});
+    table.quantities.push_back(
+        {law.prefix + "_p",
+         {"tap"},
+         std::move(p),
+         "1",
+         "p-value of the law: chi2 over the scatter between realizations (F), of one chi2 alone",
+         ""});
   }
   table.quantities.push_back({law.prefix + "_status",
                               {"tap"},

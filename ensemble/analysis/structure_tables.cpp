@@ -112,7 +112,10 @@ void add_averages(const PartPackings& part, const MeasuredQuantity& quantity, st
       {name, axes, std::move(found.means), units, long_name, std::string(quantity.source)});
   if (!quantity.with_error || quantity.pooling == Pooling::sum) return;
   table.quantities.push_back({name + "_error", axes, std::move(found.errors), units,
-                              "standard error over realizations", ""});
+                              quantity.pooling == Pooling::weighted
+                                  ? "standard error by the jackknife over packings"
+                                  : "standard error over realizations",
+                              ""});
   table.quantities.push_back({name + "_dof", std::move(axes), std::move(found.dof), "1",
                               "degrees of freedom of the error", ""});
 }

@@ -208,19 +208,21 @@ void add_curve(Table& table, const Curve& source, const Fit& fit) {
 }
 
 void add_statistics(Table& table, const Fit& fit) {
-  const std::pair<const char*, double> numbers[] = {
-      {"points", static_cast<double>(fit.fitted.size())},
-      {"residual_sum", fit.residual_sum},
-      {"reduced_chi2", fit.reduced_chi2},
-      {"r2", fit.r2},
-      {"condition", fit.condition},
-      {"effective_points", fit.effective_size},
-      {"weighted_points", fit.weighted_size},
-      {"error_dof", fit.error_dof},
-      {"error_factor", fit.error_factor},
-      {"runs_p", fit.runs.p}};
-  for (const auto& [name, value] : numbers) {
-    table.quantities.push_back(values(name, {}, {value}, ""));
+  const std::tuple<const char*, double, const char*> numbers[] = {
+      {"points", static_cast<double>(fit.fitted.size()), "points of the curve"},
+      {"residual_sum", fit.residual_sum,
+       "sum of squared residuals, over x_error where the points have errors"},
+      {"reduced_chi2", fit.reduced_chi2, "residual_sum over points less free parameters"},
+      {"r2", fit.r2, "1 - residual_sum / weighted sum of squares about the weighted mean"},
+      {"condition", fit.condition,
+       "condition of J^T J for columns of the Jacobian J of unit length"},
+      {"effective_points", fit.effective_size, "independent points that the residuals are worth"},
+      {"weighted_points", fit.weighted_size, "points of equal weight, (sum w)^2 / sum w^2"},
+      {"error_dof", fit.error_dof, "degrees of freedom of error"},
+      {"error_factor", fit.error_factor, "(points / effective_points)^(1/2)"},
+      {"runs_p", fit.runs.p, "p-value of the runs of signs of the residuals in order of t"}};
+  for (const auto& [name, value, meaning] : numbers) {
+    table.quantities.push_back(values(name, {}, {value}, meaning));
   }
 }
 

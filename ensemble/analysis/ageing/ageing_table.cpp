@@ -24,10 +24,13 @@ struct EstimateColumn {
   const char* meaning;
 };
 constexpr EstimateColumn estimate_columns[] = {
-    {"_error", &LogEstimate::error, "standard error over realizations, of the logarithm"},
-    {"_low_68", &LogEstimate::low_68, "lower end of the 68 % interval, Student's t"},
+    {"_error", &LogEstimate::error,
+     "standard error over realizations of ln of the value, times the value"},
+    {"_low_68", &LogEstimate::low_68,
+     "lower end of the 68 % interval, Student's t of ln of the value"},
     {"_high_68", &LogEstimate::high_68, "its upper end"},
-    {"_low_95", &LogEstimate::low_95, "lower end of the 95 % interval, Student's t"},
+    {"_low_95", &LogEstimate::low_95,
+     "lower end of the 95 % interval, Student's t of ln of the value"},
     {"_high_95", &LogEstimate::high_95, "its upper end"}};
 
 std::vector<double> numbers(const std::vector<LogEstimate>& estimates, double LogEstimate::*field) {

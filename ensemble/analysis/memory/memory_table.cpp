@@ -101,15 +101,17 @@ void add_differences(const Column& observable, const std::string& control, const
               "strength of the taps of the first");
   columns.add("second_" + control, {"pair"}, second_strength, units, "of the second");
   columns.add("difference", axes, value, observable.units,
-              "of the responses at equal value at the switch, second less first", josserand);
+              "response of the second less that of the first, at equal value at the switch",
+              josserand);
   columns.add("difference_error", axes, error, observable.units,
               "standard error over realizations");
   columns.add("difference_dof", axes, dof, "1", "its degrees of freedom");
-  columns.add("difference_p", axes, p, "1", "of no difference, this one alone, Student's t");
+  columns.add("difference_p", axes, p, "1",
+              "p-value of no difference, this one alone, Student's t");
   columns.add("difference_p_corrected", axes, corrected, "1",
               "the same for all together, Holm 1979, Scand. J. Statist. 6, 65");
   columns.add("difference_detectable", axes, detectable, observable.units,
-              "that would have been found with probability 0.8");
+              "smallest difference that would have been found with probability 0.8");
 }
 
 }  // namespace

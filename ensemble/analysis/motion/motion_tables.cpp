@@ -47,7 +47,8 @@ class MotionTable {
 
   /// `estimate`: of an origin, a lag and a place.
   template <class Estimate>
-  void add_means(const Label& label, const Estimate& estimate) {
+  void add_means(const Label& label, const Estimate& estimate,
+                 const char* of_error = "standard error over realizations, jackknife") {
     std::vector<double> values, errors, dof;
     for_all([&](std::size_t o, std::size_t l, std::size_t place) {
       const MeanEstimate mean = estimate(o, l, place);
@@ -56,18 +57,21 @@ class MotionTable {
       dof.push_back(mean.dof);
     });
     add(label, std::move(values));
-    add({label.name + "_error", label.units, "standard error over realizations", ""},
-        std::move(errors));
+    add({label.name + "_error", label.units, of_error, ""}, std::move(errors));
     add({label.name + "_dof", "1", "its degrees of freedom", ""}, std::move(dof));
   }
   void add_means_of(const Label& label, const Row& row) {
-    add_means(label, [&](std::size_t o, std::size_t l, std::size_t place) {
-      return mean_estimate(row(o, l, place));
-    });
+    add_means(
+        label,
+        [&](std::size_t o, std::size_t l, std::size_t place) {
+          return mean_estimate(row(o, l, place));
+        },
+        "standard error over realizations");
   }
 
   template <class Estimate>
-  void add_intervals(const Label& label, const char* symbol, const Estimate& estimate) {
+  void add_intervals(const Label& label, const char* of_error, const char* of_end,
+                     const Estimate& estimate) {
     constexpr std::pair<const char*, double LogEstimate::*> fields[] = {
         {"_low_68", &LogEstimate::low_68},
         {"_high_68", &LogEstimate::high_68},
@@ -83,9 +87,9 @@ class MotionTable {
       return all;
     };
     add(label, values(&LogEstimate::value));
-    add({label.name + "_error", label.units, "standard error", ""}, values(&LogEstimate::error));
+    add({label.name + "_error", label.units, of_error, ""}, values(&LogEstimate::error));
     for (const auto& [ending, field] : fields)
-      add({label.name + ending, label.units, symbol, ""}, values(field));
+      add({label.name + ending, label.units, of_end, ""}, values(field));
   }
 
   void add_count() {
@@ -214,7 +218,8 @@ Table displacement_table(const std::string& prefix, const MotionRecords& records
                 vertical_non_gaussian);
   table.add_intervals(
       {"lateral_ratio", "1", "msd_lateral over that of the first waiting time, geometric mean", ""},
-      "end of the interval, Student's t of the logarithm",
+      "standard error over realizations of ln of the value, times the value",
+      "end of the interval, Student's t of ln of the value",
       [&](std::size_t o, std::size_t l, std::size_t) { return lateral_ratio(records, o, l); });
   table.add_count();
   add_age(records, table.table());
@@ -243,6 +248,7 @@ Table overlap_table(const std::string& prefix, const MotionRecords& records) {
         {kind.row, "1", kind.row_text, four_point},
         [&](std::size_t o, std::size_t l, std::size_t length) { return copy(row(o, l, length)); });
     table.add_intervals({kind.chi_4, "1", kind.of_chi_4, four_point},
+                        "value (2 / (M - 1))^(1/2), M realizations with normal overlaps",
                         "end of the interval, chi2 of normal overlaps",
                         [&](std::size_t o, std::size_t l, std::size_t length) {
                           return four_point_susceptibility(row(o, l, length), records.n_spheres);
@@ -285,17 +291,20 @@ Table layer_table(const std::string& prefix, const MotionRecords& records) {
                      });
   table.add_means(
       {"lateral_non_gaussian", "1",
-       "<r^4> / (2 <r^2>^2) - 1, sideways; < > over the layer and realizations", rahman},
+       "<r^4> / (2 <r^2>^2) (1 + 1/(n M)) - 1, sideways; < > over the layer's n spheres and M "
+       "realizations",
+       rahman},
       [&](std::size_t o, std::size_t l, std::size_t layer) {
         return layer_lateral_non_gaussian(records, o, l, layer);
       });
-  table.add_means({"vertical_non_gaussian", "1",
-                   "<z^4> / (3 <z^2>^2) - 1, about each layer's mean; < > over the layer and "
-                   "realizations",
-                   rahman},
-                  [&](std::size_t o, std::size_t l, std::size_t layer) {
-                    return layer_vertical_non_gaussian(records, o, l, layer);
-                  });
+  table.add_means(
+      {"vertical_non_gaussian", "1",
+       "<z^4> / (3 <z^2>^2) (1 + 2/((n - 1) M)) - 1, about each layer's mean; < > over the "
+       "layer's n spheres and M realizations",
+       rahman},
+      [&](std::size_t o, std::size_t l, std::size_t layer) {
+        return layer_vertical_non_gaussian(records, o, l, layer);
+      });
   return table.take();
 }
 

@@ -118,8 +118,8 @@ void OrderingAnalysis::add_law(Table& table) const {
   add_limits(table, "weibull_shape", law.shape_95, "95", "1", thoman);
   put(table, single_value("weibull_scale", law.scale, "taps",
                           "t by which 63 % have ordered, tap n being t = n - 1/2", thoman));
-  put(table,
-      single_value("memoryless_p", law.memoryless_p, "1", "of shape = 1, two-sided", thoman));
+  put(table, single_value("memoryless_p", law.memoryless_p, "1", "p-value of shape = 1, two-sided",
+                          thoman));
   const GrowthRates growth = growth_.result();
   add_growth(table, "growth_per_decade", growth.per_decade, series_.units + "/decade",
              "slope on log10 t from tap 1 on, decades weighing alike");

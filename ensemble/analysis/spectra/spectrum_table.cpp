@@ -163,13 +163,17 @@ Table SpectrumAnalysis::table() const {
   add("ar1_slope_error", trend.is_constant() ? std::nan("") : memory.error.error, "1",
       "standard error, from that of the time, and 0.03 for the bias of short series");
   add("ar1_slope_dof", memory.error.dof, "1", "degrees of freedom of ar1_slope_error");
-  add("ar1_slope_p", memory.p, "1", "of the slope being ar1_slope, Student's t");
+  add("ar1_slope_p", memory.p, "1", "p-value of the slope being ar1_slope, Student's t");
   add("drift", trend.line.value, series_.units,
       "change of the mean over the taps, by a straight line");
-  add("drift_error", error_or_nan(trend.line.error()), series_.units, "standard error");
+  add("drift_error", error_or_nan(trend.line.error()), series_.units,
+      trend.line.scatter_error.known() ? "standard error over realizations"
+                                       : "standard error within the series");
   add("drift_dof", trend.line.error().dof, "1", "degrees of freedom of drift_error");
-  add("drift_p", trend.tests > 0 ? trend.p : std::nan(""), "1", "of no drift");
-  add("drift_share", trend.share, "1", "of the variance in time");
+  add("drift_p", trend.tests > 0 ? trend.p : std::nan(""), "1",
+      "p-value of no drift, the tests of line and halves together (Bonferroni)");
+  add("drift_share", trend.share, "1",
+      "share of the variance in time that the straight line explains");
   table.notes = {{"observable", series_.observable},
                  {"taps", fmt::format("{} to {}", series_.first_tap, series_.last_tap)},
                  {"realizations", fmt::to_string(spectrum.realizations)},

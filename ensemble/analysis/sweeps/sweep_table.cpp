@@ -35,8 +35,8 @@ void add_extremum(const std::string& name, const char* place, const SweepExtremu
             fmt::format("{}, at the {} point of the parabola: a description, without an error",
                         quantity.long_name, place),
             table);
-  add_value(name + "_p", found.p, "1", fmt::format("of no {} inside the sweep", name), table,
-            "two lines: Simonsohn 2018, doi:10.1177/2515245918805755");
+  add_value(name + "_p", found.p, "1", fmt::format("p-value of no {} inside the sweep", name),
+            table, "two lines: Simonsohn 2018, doi:10.1177/2515245918805755");
   table.quantities.push_back({name + "_points",
                               {},
                               std::vector{std::uint64_t{found.points}},
@@ -49,12 +49,12 @@ void add_extremum(const std::string& name, const char* place, const SweepExtremu
 void add_line(const StraightLine& line, const std::string& slope_units, const Column& quantity,
               Table& table) {
   add_with_error("line_intercept", line.intercept, line.intercept_error, quantity.units,
-                 "of a straight line", table);
-  add_with_error("line_slope", line.slope, line.slope_error, slope_units, "of a straight line",
-                 table);
+                 "intercept of a straight line", table);
+  add_with_error("line_slope", line.slope, line.slope_error, slope_units,
+                 "slope of a straight line", table);
   add_value("line_reduced_chi2", line.reduced_chi2, "1", "chi2 per degree of freedom of the line",
             table);
-  add_value("line_p", line.p, "1", "of points on a straight line scattering as much", table,
+  add_value("line_p", line.p, "1", "p-value of points on a straight line scattering as much", table,
             "F-test, Box 1954, doi:10.1214/aoms/1177728786");
 }
 
@@ -88,7 +88,7 @@ void add_differences(const SweepCurve& curve, std::optional<std::size_t> referen
              : "standard error of two independent means");
   add("difference_dof", std::move(dof), "1", "degrees of freedom of difference_error",
       paired ? "" : "Welch 1947, doi:10.1093/biomet/34.1-2.28");
-  add("difference_p", std::move(p), "1", "of no difference, this pair alone, Student's t");
+  add("difference_p", std::move(p), "1", "p-value of no difference, this pair alone, Student's t");
   add("difference_p_corrected", std::move(corrected), "1", "the same for all pairs together",
       "Holm 1979, Scand. J. Statist. 6, 65");
   table.notes.emplace_back("differences",
@@ -123,8 +123,8 @@ Errors numbers(const std::vector<ErrorOf>& errors) {
 // The assumption of pooling.
 void add_scatter(const SweepCurve& curve, Table& table) {
   const double p = curve.p_of_equal_scatter();
-  add_value("pooled_sigma_p", p, "1", "of realizations scattering alike at all points", table,
-            "Bartlett 1937, doi:10.1098/rspa.1937.0109");
+  add_value("pooled_sigma_p", p, "1", "p-value of realizations scattering alike at all points",
+            table, "Bartlett 1937, doi:10.1098/rspa.1937.0109");
   if (!(p < significance_level) || !curve.pools()) return;
   table.notes.emplace_back(
       "scatter", finite_text("realizations do not scatter alike at all points ({}): errors "

@@ -40,8 +40,8 @@ class ColumnsAlong {
     add(name, std::move(value), units, meaning, source);
     add(name + "_error", std::move(error), units, "standard error, jackknife over realizations");
     add(name + "_dof", std::move(dof), "1", "its degrees of freedom");
-    add(name + "_low_95", std::move(low), units, "95 % interval, Student's t");
-    add(name + "_high_95", std::move(high), units, "95 % interval, Student's t");
+    add(name + "_low_95", std::move(low), units, "lower end of the 95 % interval, Student's t");
+    add(name + "_high_95", std::move(high), units, "its upper end");
   }
   /// Variances, whose logarithm has the error.
   void add_variances(const std::string& name, const std::vector<LogEstimate>& values,
@@ -56,11 +56,14 @@ class ColumnsAlong {
       high.push_back(estimate.high_95);
     }
     add(name, std::move(value), units, meaning, nowak);
-    add(name + "_error", std::move(error), units, "standard error, jackknife of the logarithm");
-    add(name + "_low_68", std::move(low_68), units, "68 % interval, Student's t");
-    add(name + "_high_68", std::move(high_68), units, "68 % interval, Student's t");
-    add(name + "_low_95", std::move(low), units, "95 % interval, Student's t");
-    add(name + "_high_95", std::move(high), units, "95 % interval, Student's t");
+    add(name + "_error", std::move(error), units,
+        "standard error of ln of the value, jackknife over realizations, times the value");
+    add(name + "_low_68", std::move(low_68), units,
+        "lower end of the 68 % interval, Student's t of ln of the value");
+    add(name + "_high_68", std::move(high_68), units, "its upper end");
+    add(name + "_low_95", std::move(low), units,
+        "lower end of the 95 % interval, Student's t of ln of the value");
+    add(name + "_high_95", std::move(high), units, "its upper end");
   }
 
  private:
@@ -110,7 +113,8 @@ void add_states(const Column& observable, const std::string& control, const std:
   columns.add(observable.name, means, observable.units, observable.long_name);
   const std::string squared = observable.units == "1" ? "1" : observable.units + "^2";
   columns.add_variances("variance", variances, squared,
-                        "variance over taps and realizations together, about their common mean");
+                        "variance over taps and realizations together, about their common mean; "
+                        "the jackknife of its logarithm removes the bias");
   columns.add("volume", volumes, "sphere volumes", "volume a sphere, V/N");
   columns.add_variances("volume_variance", volume_variances, "sphere volumes^2",
                         "variance of V over N, which does not depend on N where parts of a bed "
@@ -139,11 +143,14 @@ void add_steps(std::span<const CompactivityStep> steps, std::span<const std::siz
   table.axes.push_back({"neighbours", {"neighbours"}, std::move(index), "1", "two states", ""});
   columns.add("from_state", std::move(start), "1", "the first of the two");
   columns.add("to_state", std::move(end), "1", "the second");
-  columns.add("separation", std::move(separation), "1", "of their mean volumes, in deviations");
-  columns.add("overlap", std::move(overlap), "1", "what their histograms share", dean);
-  columns.add("step_fluctuations", fluctuations, per_volume, "change of 1/X, -dV/var(V)", nowak);
-  columns.add("step_histograms", histograms, per_volume, "change of 1/X, slope of ln P_1/P_2",
-              dean);
+  columns.add("separation", std::move(separation), "1",
+              "difference of the mean volumes over the geometric mean of the deviations");
+  columns.add("overlap", std::move(overlap), "1",
+              "sum over bins of the smaller share of the two histograms", dean);
+  columns.add("step_fluctuations", fluctuations, per_volume,
+              "change of 1/X, -(V_2 - V_1) / (s_1 s_2) with the deviations s of V", nowak);
+  columns.add("step_histograms", histograms, per_volume,
+              "change of 1/X, slope of ln(P_1/P_2) against V", dean);
   columns.add("step_difference", difference, per_volume, "histograms less fluctuations");
   columns.add("bend", bend, per_volume,
               "change of the slope of ln P_1/P_2 over a deviation; 0 with one density of states",
@@ -178,9 +185,9 @@ Table volume_table(std::string name, const Column& observable, const std::string
     columns.add(std::string("inverse_x_") + suffix, all, "1/sphere volumes", meaning, source);
   };
   inverse_x("fluctuations", &CompactivityStep::fluctuations,
-            "1/X less that of the first steady state, by the integral of -dV/var(V)", nowak);
+            "1/X less that of the first steady state, sum of step_fluctuations", nowak);
   inverse_x("histograms", &CompactivityStep::histograms,
-            "1/X less that of the first steady state, by overlapping histograms", dean);
+            "1/X less that of the first steady state, sum of step_histograms", dean);
   add_steps(steps, used, table);
   table.notes = {{"observable", observable.name},
                  {"spheres", finite_text("{:.6g}", volume_of.spheres)},
