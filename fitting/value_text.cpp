@@ -58,7 +58,12 @@ std::string number_text(double value, int digits) {
 }
 
 std::string probability_text(double p) {
-  return p < smallest_p ? "< " + number_text(smallest_p, 1) : number_text(p, 2);
+  if (p < smallest_p) return "< " + number_text(smallest_p, 1);
+  // No probability is rounded to the level of the tests from either side.
+  constexpr double level = 0.05;
+  int digits = 2;
+  while (p != level && digits < 6 && number_text(p, digits) == number_text(level, 2)) ++digits;
+  return number_text(p, digits);
 }
 
 std::string p_value_text(double p) {

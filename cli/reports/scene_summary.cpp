@@ -37,9 +37,16 @@ std::string note(const Table& table, const char* name) {
   return "";
 }
 
-/// Without the test in parentheses, which --verbose prints.
-std::string first_clause(const std::string& text) {
-  return text.substr(0, text.find(" ("));
+/// Without tests and intervals in parentheses, which --verbose prints.
+std::string without_parentheses(const std::string& text) {
+  std::string kept;
+  int depth = 0;
+  for (const char c : text) {
+    if (c == '(' && depth++ == 0 && kept.ends_with(' ')) kept.pop_back();
+    if (depth == 0) kept += c;
+    if (c == ')' && depth > 0) --depth;
+  }
+  return kept;
 }
 
 void append(std::string& verdict, const std::string& text) {
@@ -68,14 +75,14 @@ std::string verdict_of(const Table& table) {
   std::string verdict;
   append(verdict, slope_text(table));
   for (const auto& [name, subject] : results) {
-    if (const std::string text = first_clause(note(table, name)); !text.empty()) {
+    if (const std::string text = without_parentheses(note(table, name)); !text.empty()) {
       append(verdict, subject + text);
     }
   }
   for (const Quantity& quantity : table.quantities) {
     const auto* texts = std::get_if<std::vector<std::string>>(&quantity.values);
     if (texts == nullptr || quantity.name != "area_verdict") continue;
-    for (const std::string& text : *texts) append(verdict, first_clause(text));
+    for (const std::string& text : *texts) append(verdict, without_parentheses(text));
   }
   return verdict;
 }

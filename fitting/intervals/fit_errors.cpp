@@ -64,7 +64,9 @@ DependentErrors of_memory(const Curve& curve, const LinearProblem& problem, Fit&
   return errors;
 }
 
-DependentErrors of_independent_points(const LinearProblem& problem, const Fit& fit) {
+DependentErrors of_independent_points(const LinearProblem& problem, Fit& fit) {
+  fit.effective_size = static_cast<double>(fit.n_points);
+  count_effective_points(fit);
   const Eigen::Index n = problem.jacobian.cols();
   DependentErrors errors;
   errors.covariance =

@@ -152,6 +152,14 @@ class Displacements {
     return 1 / (std::max(height_weight * share, least_share) * crowding);
   }
 
+  /// True for a displacement that can lead from a centre to another in the region, from side to
+  /// side as well; periods admit half of them.
+  bool is_possible(Vec3 way) const {
+    constexpr double inwards = 1 - 1e-12;  // rounding of centres at opposite sides
+    if (half_height_ > 0 && std::abs(way.z) > half_height_) return false;
+    return footprint_.overlap(inwards * way.x, inwards * way.y) > 0;
+  }
+
   /// Share of the central spheres that have that place in the region, not evened.
   double share(Vec3 way) const {
     constexpr std::size_t few = 300;
@@ -233,9 +241,10 @@ void count_pairs(const Packing& packing, const Heights& heights, const Displacem
       const double distance = std::sqrt(distance_squared);
       const auto bin = static_cast<std::size_t>(distance * bins_per_length + early);
       if (bin >= n_bins) return;
+      if (!displacements.is_possible(way)) return;
+      ++pairs.counts[bin];
       const double share = displacements.share(way);
       if (share <= 0) return;
-      ++pairs.counts[bin];
       const double high = static_cast<double>(bin + 1) * pairs.bin_width;
       if (whole.exceeds_half_period(high)) {
         pairs.neighbours[bin] += 1 / std::max(share, least_share);

@@ -263,7 +263,9 @@ class Files(Case):
             rows.append(f"{t},{inverse_log(t) + 1e-4 * state!r}")
         self.write("t,X\n" + "\n".join(rows), "walk.csv")
         self.assertGreater(self.curve("walk.csv")["fits"][0]["memory"], 0)
-        self.assertEqual(self.curve("walk.csv", "--independent")["fits"][0]["memory"], 0)
+        independent = self.curve("walk.csv", "--independent")["fits"][0]
+        self.assertEqual((independent["memory"], independent["effective_points"], independent["error_factor"]),
+                         (0, 199, 1))
 
     def test_figures_show_the_data_and_the_fitted_laws(self):
         for name, option, caption in (("v_named.csv", (), "bars are the errors given"),

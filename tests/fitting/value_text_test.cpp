@@ -107,6 +107,10 @@ TEST_CASE("a p-value is never printed as 0") {
   CHECK(p_value_text(9.6e-80) == "p < 1e-16");
   CHECK(p_value_text(0) == "p < 1e-16");
   CHECK(p_value_text(1) == "p = 1");
+  CHECK(p_value_text(0.0495) == "p = 0.0495");
+  CHECK(p_value_text(0.05003) == "p = 0.05003");
+  CHECK(p_value_text(0.05) == "p = 0.05");
+  CHECK(p_value_text(0.0512) == "p = 0.051");
   CHECK(probability_text(0) == "< 1e-16");
   CHECK(probability_text(nan) == "-");
 }

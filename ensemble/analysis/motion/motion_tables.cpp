@@ -165,10 +165,10 @@ void add_age(const MotionRecords& records, Table& table) {
       const LogEstimate ratio = lateral_ratio(records, o, l);
       if (!is_limited(ratio)) continue;
       table.notes.emplace_back(
-          "age",
-          finite_text("over {} taps msd_lateral from tap {} is {:.3g} (95 %: {:.3g} to "
-                      "{:.3g}) of that from tap {}",
-                      lags[l], origins[o], ratio.value, ratio.low_95, ratio.high_95, origins[0]));
+          "age", finite_text(
+                     "over {} taps msd_lateral from tap {} is {:.3g} times that from tap {} (95 %: "
+                     "{:.3g} to {:.3g})",
+                     lags[l], origins[o], ratio.value, origins[0], ratio.low_95, ratio.high_95));
       return;
     }
 }

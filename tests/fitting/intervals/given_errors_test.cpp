@@ -158,6 +158,18 @@ TEST_CASE("Errors given too small: verdict and remark report how much longer the
     REQUIRE(!found.remarks.empty());
     CHECK(found.remarks.front().find(longer) != std::string::npos);
   }
+  // Points that are taken as independent count as many as they are, also if their residuals look
+  // correlated.
+  Curve walk = line(49, 0.1, 7);
+  for (std::size_t i = 1; i < walk.x.size(); ++i)
+    walk.x[i] += 0.7 * (walk.x[i - 1] - 1 - slope * walk.t[i - 1]);
+  const double scatter =
+      std::sqrt(std::get<Fit>(fit(Line(), walk, {.memory = false})).reduced_chi2);
+  walk.sigma.assign(walk.t.size(), scatter / 1.5);
+  const Fit doubted = std::get<Fit>(fit(Line(), walk, {.memory = false}));
+  CHECK(doubted.effective_size == 49);
+  CHECK(doubted.error_factor == 1);
+  CHECK(doubted.scatter_ratio == Approx(1.5));
   // Errors that are right, too large, or not given raise no doubt.
   Curve curve = line(60, 0.1, 7);
   CHECK(std::get<Fit>(fit(Line(), curve)).scatter_ratio == 1);
