@@ -76,7 +76,7 @@ std::string statement(const Estimate& estimate) {
       text << name << " has only an upper limit: " << name << " < " << interval.upper << " (95 %)";
       break;
     case Identifiability::not_identifiable:
-      text << name << " is not identifiable: the data set no limit on either side";
+      text << name << " is not identifiable: the data set no 95 % limit on either side";
       break;
   }
   return text.str();

@@ -95,8 +95,8 @@ std::string measured_page(const FittedCurve& fitted, std::span<const PageFigure>
   for (const Fit& fit : fits) text += law_html(fit, fitted.source.units);
   text += listed(refusals);
   text +=
-      "<p class=\"small\">a(b): b, in the last digits of a, is half the 68 % interval; -: that "
-      "interval is open. ";
+      "<p class=\"small\">a(b): b, in the last digits of a, is half the 68 % interval; -: it is "
+      "open, or the 95 % interval is on both sides. ";
   return text +
          html_text(fmt::format("Made {} by jostle {} ({}): {}", provenance.started,
                                provenance.version, provenance.git_revision,

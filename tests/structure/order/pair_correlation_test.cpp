@@ -257,11 +257,11 @@ TEST_CASE("Counts are those of all pairs and images") {
 
 TEST_CASE("Pairs that touch opposite plates are counted") {
   // A simple cubic lattice, which touches both plates, or not by a hair.
-  const auto counts = [](double apart) {
+  const auto counts = [](double gap) {
     Packing lattice{Plates{.width = 10, .gap = 3}, {}};
     for (int x = 0; x < 10; ++x)
       for (int z = 0; z < 12; ++z)
-        for (const double y : {0.5 + apart, 1.5, 2.5 - apart})
+        for (const double y : {0.5 + gap, 1.5, 2.5 - gap})
           lattice.centres.push_back({x + 0.5, y, z + 0.5});
     return pair_correlation(lattice, {.r_max = 3.85, .bin_width = 0.35}).counts;
   };
