@@ -228,7 +228,6 @@ bool Fitter::find_intervals(const DependentErrors& errors, Fit& fit) {
   Eigen::Index variable = 0;
   for (std::size_t j = 0; j < free_.size(); ++j) {
     if (!free_[j]) continue;
-    const double error = std::sqrt(errors.covariance(variable, variable));
     const double longer = std::sqrt(errors.inflation[variable++]);
     for (int level = 0; level < 2; ++level) {
       problem.thresholds[level] = longer * two_sided(interval_levels[level], fit.error_dof);
@@ -253,7 +252,7 @@ bool Fitter::find_intervals(const DependentErrors& errors, Fit& fit) {
     }
     estimate.intervals[0] = found.intervals[0];
     estimate.intervals[1] = found.intervals[1];
-    if (differ_in_shape) use_student_intervals(curve_, error, fit.error_dof, estimate);
+    if (differ_in_shape) use_student_intervals(curve_, fit.error_dof, estimate);
   }
   return true;
 }

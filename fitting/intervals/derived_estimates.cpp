@@ -72,8 +72,7 @@ Estimate estimate_in(const Rewritten& rewritten, std::size_t index, const Fitted
   estimate.intervals[0] = found.intervals[0];
   estimate.intervals[1] = found.intervals[1];
   if (realizations_differ_in_shape(errors, counts)) {
-    const double error = std::sqrt(errors.covariance(variable, variable));
-    use_student_intervals(fitted.curve, error, fit.error_dof, estimate);
+    use_student_intervals(fitted.curve, fit.error_dof, estimate);
   }
   return estimate;
 }

@@ -41,9 +41,10 @@ bool realizations_differ_in_shape(const DependentErrors& errors, const Fit& fit)
   return false;
 }
 
-void use_student_intervals(const Curve& curve, double error, double dof, Estimate& estimate) {
+void use_student_intervals(const Curve& curve, double dof, Estimate& estimate) {
   const Transform transform(estimate.parameter);
   const double middle = transform.to_variable(estimate.value);
+  const double error = estimate.error / std::abs(transform.slope(middle));
   const double reach = farthest(curve, estimate, transform);
   if (!(error > 0) || !std::isfinite(error) || !std::isfinite(middle)) return;
   Interval student[2];

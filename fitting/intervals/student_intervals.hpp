@@ -17,8 +17,8 @@ bool realizations_differ_in_shape(const DependentErrors& errors, const Fit& fit)
 
 /// Replaces the intervals of an estimate by value +- t times the clustered standard error in the
 /// variable of the fit (the logarithm of a positive parameter). Keeps profiled intervals whose
-/// 95 % ends agree with these within a quarter of the distance to the value. `error`: the standard
-/// error in the variable. An end that is farther than a profile searches is open.
-void use_student_intervals(const Curve& curve, double error, double dof, Estimate& estimate);
+/// 95 % ends agree with these within a quarter of the distance to the value. An end that is farther
+/// than a profile searches is open.
+void use_student_intervals(const Curve& curve, double dof, Estimate& estimate);
 
 }  // namespace jostle::inline fitting

@@ -8,11 +8,11 @@
 
 namespace jostle::inline fitting {
 
-/// A bounded parameter as a free variable: p = lower + e^u above a bound, upper - e^u below one,
-/// and between two p = lower + (upper - lower) / (1 + e^-u). Without bounds p = u.
+/// A bounded parameter as a free variable: p = lower + unit e^u above a bound, upper - unit e^u
+/// below one, and between two p = lower + (upper - lower) / (1 + e^-u). Without bounds p = unit u.
 class Transform {
  public:
-  explicit Transform(const Parameter& parameter);
+  explicit Transform(const Parameter& parameter, double unit = 1);
 
   double to_variable(double p) const;
   double to_parameter(double u) const;
@@ -21,12 +21,14 @@ class Transform {
   bool is_identity() const { return !lower_bound_ && !upper_bound_; }
 
  private:
-  double lower_, upper_;
+  double lower_, upper_, unit_;
   bool lower_bound_, upper_bound_;
 };
 
 /// (model - X) / sigma over a curve, as a function of the transformed free parameters. On the
-/// logarithmic scale (ln model - ln X) / (sigma / X). Keeps references to model and curve.
+/// logarithmic scale (ln model - ln X) / (sigma / X). Where X or t are beyond 1e-15 to 1e15, their
+/// sizes (powers of two) are the units of the parameters, so that all variables have common sizes.
+/// Keeps references to model and curve.
 class CurveResiduals final : public Residuals {
  public:
   /// values: [n_parameters], those that are not free keep theirs; free: [n_parameters].
@@ -57,9 +59,10 @@ class CurveResiduals final : public Residuals {
   ParameterValues fixed_values_;
   std::vector<std::size_t> free_;      // indices of the free parameters
   std::vector<Transform> transforms_;  // [n_parameters]
-  std::vector<double> target_;         // X, or ln X
+  std::vector<double> target_;         // X, or ln(X / unit)
   std::vector<double> weight_;         // 1 / error of the target
   double level_weight_;
+  double unit_;  // of X
   bool logarithmic_;
 };
 
