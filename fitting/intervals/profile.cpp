@@ -44,6 +44,11 @@ class Side {
 double Side::crossing(HeldFit low, HeldFit high, double threshold) {
   double distance = high.distance;
   double f_low = low.z - threshold, f_high = high.z - threshold;
+  // The march meets the end of linear laws at its first step, where the sign of f is rounding.
+  constexpr double equal = 1e-9;
+  for (const HeldFit& end : {low, high}) {
+    if (end.settled && std::abs(end.z - threshold) <= equal * threshold) return end.distance;
+  }
   for (int i = 0; i < 60; ++i) {
     const double width = high.distance - low.distance;
     distance = low.distance - f_low * width / (f_high - f_low);

@@ -9,7 +9,7 @@ namespace jostle::inline fitting {
 
 namespace {
 
-// A power of two near the largest of these, or 1 where that is of a common size.
+// Returns a power of two near the largest of these, or 1 where the largest has a common size.
 double unit_of(const std::vector<double>& values) {
   constexpr double least_common = 1e-15, largest_common = 1e15;
   double largest = 0;

@@ -62,7 +62,7 @@ class CurveResiduals final : public Residuals {
   std::vector<double> target_;         // X, or ln(X / unit)
   std::vector<double> weight_;         // 1 / error of the target
   double level_weight_;
-  double unit_;  // of X
+  double unit_;  // unit of X
   bool logarithmic_;
 };
 
