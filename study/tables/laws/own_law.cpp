@@ -144,7 +144,12 @@ FormulaModel::FormulaModel(const OwnLaw& law) : law_(law) {
                            .upper = bounds.upper});
     start_.push_back(value);
   }
-  find_traits([this](double t, const double* p) { return value(t, p); }, start_, parameters_);
+  const bool has_units =
+      find_traits([this](double t, const double* p) { return value(t, p); }, parameters_);
+  for (Parameter& parameter : parameters_) {
+    if (has_units || parameter.unit != ParameterUnit::none) continue;
+    parameter.meaning += " (the formula does not determine its unit)";
+  }
 }
 
 // A formula is evaluated in memory of its own, and fits of one model run on many threads: each

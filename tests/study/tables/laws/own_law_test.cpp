@@ -200,6 +200,55 @@ TEST_CASE("A law of the user's own is fitted from its start") {
   CHECK(repeated.estimates[2].value == Approx(found.estimates[2].value).epsilon(1e-7));
 }
 
+TEST_CASE("Units of a formula do not depend on the start") {
+  struct Formula {
+    std::string text;
+    std::vector<ParameterUnit> units;
+  };
+  using enum ParameterUnit;
+  const std::vector<Formula> all = {{"a*sin(t/b)+c", {value, time, value}},
+                                    {"a + b*exp(-t/c)*cos(t)", {value, value, none}},
+                                    {"a*sqrt(-b*t) + c", {none, none, none}},
+                                    {"t < b ? a : c", {value, time, value}},
+                                    {"a + c*((t > b) + 0.5)", {value, time, value}},
+                                    {"a + c*t^b", {value, none, value}}};
+  for (const Formula& formula : all) {
+    for (const double size : {1e-4, 0.3, 20.0, -7.0, 4000.0}) {
+      CAPTURE(formula.text, size);
+      const auto law = make_own_law(
+          {.formula = formula.text, .start = {{"a", size}, {"b", 3 * size}, {"c", size / 7}}});
+      for (std::size_t j = 0; j < 3; ++j) CHECK(law->parameters()[j].unit == formula.units[j]);
+    }
+  }
+}
+
+TEST_CASE("A parameter whose unit the formula leaves open has this in its meaning") {
+  const auto open = make_own_law({.formula = "a*exp(-b*t)*cos(t)", .start = {{"a", 1}, {"b", 2}}});
+  CHECK(open->parameters()[1].meaning == "begun at 2 (the formula does not determine its unit)");
+  const auto known = make_own_law({.formula = "a*exp(-b*t)", .start = {{"a", 1}, {"b", 2}}});
+  CHECK(known->parameters()[1].meaning == "begun at 2");
+}
+
+TEST_CASE("Fits of an own law from two starts have equal verdicts") {
+  Curve curve;
+  for (int k = 0; k < 60; ++k) {
+    curve.t.push_back(0.5 * k);
+    curve.x.push_back(2 + std::sin(0.5 * k / 3.0) + 0.1 * std::sin(1 + 17.0 * k * k));
+  }
+  const auto fit_begun = [&](double a, double time, double b) {
+    const auto law =
+        make_own_law({.formula = "a*sin(t/t0)+b", .start = {{"a", a}, {"t0", time}, {"b", b}}});
+    return std::get<Fit>(fit(*law, curve));
+  };
+  const Fit first = fit_begun(1, 1, 0), second = fit_begun(0.5, 3.2, 1.9);
+  REQUIRE(first.residual_sum == Approx(second.residual_sum).epsilon(1e-6));
+  for (std::size_t j = 0; j < 3; ++j) {
+    CAPTURE(first.estimates[j].statement, second.estimates[j].statement);
+    CHECK(first.estimates[j].identifiability == second.estimates[j].identifiability);
+    CHECK(first.estimates[j].parameter.unit == second.estimates[j].parameter.unit);
+  }
+}
+
 TEST_CASE("A slope is wide where its interval holds 0") {
   const auto line = make_own_law({.formula = "X0 + r*t", .start = {{"X0", 1}, {"r", 0.1}}});
   const auto slope_of = [&](double slope) {
