@@ -80,7 +80,8 @@ std::map<std::string, ParameterBounds> parameter_bounds(const std::vector<std::s
     if (equals == std::string::npos) {
       throw BadInput(fmt::format("--bounds {}: not NAME=LOWER:UPPER, as tau=0:", text));
     }
-    const FitRange range = read_range("--bounds", text.substr(equals + 1));
+    const FitRange range =
+        read_range("--bounds", text.substr(equals + 1), text.substr(0, equals + 1));
     if (!bounds.emplace(text.substr(0, equals), ParameterBounds{range.first, range.last}).second) {
       throw BadInput(fmt::format("--bounds {}: it has bounds already", text));
     }

@@ -22,17 +22,17 @@ double read_end(const std::string& text, double otherwise, const std::string& op
 
 }  // namespace
 
-FitRange read_range(const std::string& option, const std::string& text) {
+FitRange read_range(const std::string& option, const std::string& text, const std::string& prefix) {
   const auto colon = text.find(':');
   const std::string first = text.substr(0, colon);
   const std::string last = colon == std::string::npos ? "?" : text.substr(colon + 1);
-  const FitRange range{read_end(first, -infinite, option, text),
-                       read_end(last, infinite, option, text)};
+  const FitRange range{read_end(first, -infinite, option, prefix + text),
+                       read_end(last, infinite, option, prefix + text)};
   if (range.first <= range.last) return range;
   throw BadInput(
-      fmt::format("{} {}: {} is larger than {}, and the first number of a range may not "
-                  "exceed the last; write {}:{}",
-                  option, text, first, last, last, first));
+      fmt::format("{} {}{}: {} is larger than {}, and the first number of a range may not "
+                  "exceed the last; write {}{}:{}",
+                  option, prefix, text, first, last, prefix, last, first));
 }
 
 std::vector<NamedNumber> named_numbers(const std::string& option,

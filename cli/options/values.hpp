@@ -8,8 +8,10 @@
 
 namespace jostle::inline cli {
 
-/// "1:4000", ":4000", "1:". Throws BadInput naming the option.
-FitRange read_range(const std::string& option, const std::string& text);
+/// "1:4000", ":4000", "1:". Throws BadInput naming the option and the range with its prefix
+/// ("tau=").
+FitRange read_range(const std::string& option, const std::string& text,
+                    const std::string& prefix = "");
 
 using NamedNumber = std::pair<std::string, double>;
 

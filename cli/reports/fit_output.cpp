@@ -259,6 +259,17 @@ std::string asymptote_of_law(const Fit& fit) {
   return name + (is_limited ? estimate_text(*found) : interval_text(*found, 1));
 }
 
+// "inverse_log at 0.05 as hyperbola", for each law that was fitted as its limit.
+std::string fitted_limits(const std::vector<FitSummary>& rows) {
+  std::string text;
+  for (const FitSummary& row : rows) {
+    if (row.limit.empty()) continue;
+    text += fmt::format("{}{}{} as {}", text.empty() ? " Fitted as a limit of the law: " : ", ",
+                        row.law, row.point.empty() ? "" : " at " + row.point, row.limit);
+  }
+  return text.empty() ? "" : text + ".";
+}
+
 }  // namespace
 
 std::vector<FitSummary> summary_of(const FittedCurve& fitted) {
@@ -269,6 +280,7 @@ std::vector<FitSummary> summary_of(const FittedCurve& fitted) {
         fitted.source.observable, fitted.source.label, outcome.model, "fitted", "-", "-"};
     if (const auto* fit = std::get_if<Fit>(&outcome.result)) {
       row.asymptote = asymptote_of_law(*fit);
+      if (fit->limit) row.limit = fit->limit->name;
     } else {
       row.verdict = "no fit";
     }
@@ -319,11 +331,12 @@ std::string summary_text(const std::vector<FitSummary>& rows, const Layout& layo
     printed.push_back(observable);
   }
   return text + wrapped(fmt::format("a(b): b, in the last digits of a, is half the 68 % "
-                                    "interval.{}{} --verbose prints every fit.\n",
+                                    "interval.{}{}{} --verbose prints every fit.\n",
                                     has_limits ? " > or <: the only 95 % limit." : "",
                                     is_compared ? " difference: of the held-out errors, from the "
                                                   "leading law."
-                                                : ""),
+                                                : "",
+                                    fitted_limits(rows)),
                         layout.width);
 }
 

@@ -23,6 +23,7 @@ std::string fits_text(const FittedCurve& fitted, const Layout& layout);
 /// One law of one curve in the summary that ends a run.
 struct FitSummary {
   std::string observable, point, law, verdict, difference, asymptote;
+  std::string limit = "";  // the law that was fitted instead, where least squares are at a limit
 };
 
 /// A row for each law that was fitted to the curve, or refused.

@@ -95,15 +95,16 @@ bool is_shown_beside(const Quantity& quantity, const Block& block) {
   });
 }
 
-/// A value with its error or interval: "2.1 (1.3 to 3.4)" where there is a 95 % interval, else
-/// "2.10(40)".
+/// A value with its error or interval: "2.1 (1.3 to 3.4)" or "2.1 (> 1.3)" where there is a 95 %
+/// interval, else "2.10(40)".
 std::string shown(const Quantity& quantity, const Block& block, std::size_t index) {
   if (has_interval(quantity, block)) {
     const double low = number_at(companion(quantity, block, "_low_95"), index);
     const double high = number_at(companion(quantity, block, "_high_95"), index);
-    if (!std::isfinite(low) || !std::isfinite(high)) return shown_cell(quantity, index);
-    return fmt::format("{} ({})", number_text(number_at(&quantity, index), 4),
-                       limits_text(low, high, 4));
+    const double value = number_at(&quantity, index);
+    const bool is_open = !std::isfinite(low) && !std::isfinite(high);
+    if (is_open || !std::isfinite(value)) return shown_cell(quantity, index);
+    return fmt::format("{} ({})", number_text(value, 4), limits_text(low, high, 4));
   }
   const auto* numbers = std::get_if<std::vector<double>>(&quantity.values);
   const double width = number_at(companion(quantity, block, "_half_width"), index);

@@ -134,7 +134,8 @@ class Measured(Case):
         (self.folder / "curve.csv").write_text("t,X\n" + "".join(f"{t},{1 / t}\n" for t in range(1, 30)))
         for arguments, part in ((["--range", "10:5"], "--range 10:5: 10 is larger than 5"),
                                 (["--law", "a*exp(-t/tau)", "--start", "a=1,tau=20", "--bounds", "tau=30:20"],
-                                 "--bounds 30:20: 30 is larger than 20")):
+                                 "--bounds tau=30:20: 30 is larger than 20, and the first number of a range may "
+                                 "not exceed the last; write tau=20:30")):
             self.assertIn(part, self.jostle("fit", "curve.csv", *arguments, expect=2).stderr)
 
 

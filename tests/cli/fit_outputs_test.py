@@ -36,7 +36,10 @@ def limits(interval):
         return "no limit"
     if high is None:
         return f"> {low:.5g}"
-    return f"< {high:.5g}" if low is None else f"{low:.5g} to {high:.5g}"
+    if low is None:
+        return f"< {high:.5g}"
+    digits = next(n for n in range(5, 18) if n == 17 or f"{low:.{n}g}" != f"{high:.{n}g}")
+    return f"{low:.{digits}g} to {high:.{digits}g}"
 
 
 class WithEnsembles(Case):

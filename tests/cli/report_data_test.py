@@ -21,7 +21,7 @@ class Data(Report):
 
     def test_the_data_are_those_of_the_file(self):
         for look in (self.curves, self.tables, self.packings, self.snapshots, self.summary, self.comparisons, self.folded,
-                     self.units, self.pairs_are_drawn_from_contact_on):
+                     self.units, self.limits, self.pairs_are_drawn_from_contact_on):
             with self.subTest(look.__name__):
                 look()
 
@@ -92,6 +92,35 @@ class Data(Report):
         self.assertIn("gradient α (1/R)", shown)
         laws = json.dumps(sections["fits"], ensure_ascii=False)
         self.assertIn('"parameter", "estimate", "unit", "95 % interval"', laws)
+
+    def limits(self):
+        """The heading of a law that was fitted as its limit has the parameters of both."""
+        headings = json.dumps([one for one in self.run_data["sections"] if one["id"] == "fits"], ensure_ascii=False)
+        found = 0
+
+        def known(law, prefix):
+            names = [name.decode() for name in law[prefix + "parameter"][()]]
+            ends = (law[prefix + end][()] for end in ("value", "interval_lower", "interval_upper"))
+            value, lower, upper = (array if array.ndim == 1 else array[:, 1] for array in ends)
+            limited = [name for name, *numbers in zip(names, value, lower, upper) if numpy.isfinite(numbers).all()]
+            others = [name for name in names if name not in limited]
+            if not others:
+                return "All parameters are limited on both sides."
+            if not limited:
+                return "No parameter is limited on both sides: the curve does not identify this law."
+            verbs = ("is" if len(names) == 1 else "are" for names in (limited, others))
+            return "{} {} limited on both sides; {} {} not.".format(", ".join(limited), next(verbs), ", ".join(others),
+                                                                  next(verbs))
+
+        with h5py.File(self.folder / "everything.h5") as file:
+            for name in self.info("everything.h5")["tables"]:
+                if not name.startswith("fits/") or "note_limit" not in file[name].attrs:
+                    continue
+                self.assertIn("Fitted as a limit of the law. Parameters of the limit: " + known(file[name], "limit_") +
+                              " Parameters of the full law: " + known(file[name], ""), headings)
+                found += 1
+        self.assertGreater(found, 0)
+        self.assertEqual(headings.count("Fitted as a limit of the law."), found)
 
     def summary(self):
         """Five lines, before everything else."""

@@ -40,5 +40,8 @@ TEST_CASE("The summary has the asymptote of the full law, where its limit was fi
   const std::vector<FitSummary> rows = summary_of(fitted);
   REQUIRE(rows.size() == 1);
   CHECK(rows[0].asymptote == "X_inf > 0.5731");
-  CHECK(summary_text(rows, {.width = 100}).find("the only 95 % limit") != std::string::npos);
+  const std::string text = summary_text(rows, {.width = 200});
+  CHECK(text.find("the only 95 % limit") != std::string::npos);
+  CHECK(text.find(" Fitted as a limit of the law: inverse_log as hyperbola. --verbose") !=
+        std::string::npos);
 }

@@ -59,7 +59,7 @@ TEST_CASE("A table for people has values with their 95 % intervals") {
         std::string::npos);
   CHECK(text.find("tau_") == std::string::npos);
   std::get<std::vector<double>>(table.quantities.back().values)[0] = std::nan("");
-  CHECK(table_text(table, all_columns).find("12.35 taps") != std::string::npos);
+  CHECK(table_text(table, all_columns).find("12.35 (> 11.8) taps") != std::string::npos);
 }
 
 TEST_CASE("A brief table leaves long columns out") {
@@ -138,6 +138,26 @@ TEST_CASE("A narrow table has no empty column, and no test beside its verdict") 
 
   table.notes.clear();
   CHECK(table_text(table, {}).find("  ageing_p               0.02\n") != std::string::npos);
+}
+
+TEST_CASE("A value with one limit has this limit beside it") {
+  const double none = std::nan("");
+  Table table = example();
+  table.notes.clear();
+  table.quantities.clear();
+  const auto add = [&](const std::string& name, double value, double low, double high) {
+    table.quantities.push_back({name, {}, std::vector{value}, "1", "", ""});
+    table.quantities.push_back({name + "_low_95", {}, std::vector{low}, "1", "", ""});
+    table.quantities.push_back({name + "_high_95", {}, std::vector{high}, "1", "", ""});
+  };
+  add("v_mu", 0.5, none, 1.25);
+  add("mu", 0.5, 0.25, none);
+  add("open", 0.5, none, none);
+  const std::string text = table_text(table, {});
+  CAPTURE(text);
+  CHECK(text.find("  v_mu                   0.5 (< 1.25)\n") != std::string::npos);
+  CHECK(text.find("  mu                     0.5 (> 0.25)\n") != std::string::npos);
+  CHECK(text.find("  open                   0.5\n") != std::string::npos);
 }
 
 TEST_CASE("Rounding noise is seen beside the column it is in") {

@@ -36,7 +36,13 @@ std::string interval(double low, double high) {
   if (!std::isfinite(low) && !std::isfinite(high)) return "no limit";
   if (!std::isfinite(high)) return "above " + typeset_number(low);
   if (!std::isfinite(low)) return "below " + typeset_number(high);
-  return typeset_number(low) + " to " + typeset_number(high);
+  int digits = 4;
+  constexpr int all_digits = 17;
+  while (low < high && digits < all_digits &&
+         typeset_number(low, digits) == typeset_number(high, digits)) {
+    ++digits;
+  }
+  return typeset_number(low, digits) + " to " + typeset_number(high, digits);
 }
 
 /// The value with half of its 68 % interval.
