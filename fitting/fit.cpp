@@ -23,7 +23,8 @@ namespace jostle::inline fitting {
 
 namespace {
 
-constexpr int most_attempts = 5;  // to find a minimum that no profile undercuts
+constexpr int most_attempts = 5;           // to find a minimum that no profile undercuts
+constexpr std::size_t few_parameters = 5;  // most parameters of a law of the papers
 constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
 // One fit in the making.
@@ -95,8 +96,7 @@ std::vector<ParameterValues> Fitter::starts() const {
 }
 
 long long Fitter::allowed_evaluations() const {
-  constexpr std::size_t few = 5;  // parameters, as many as the papers' laws have
-  if (n_free() <= few) return options_.max_evaluations;
+  if (n_free() <= few_parameters) return options_.max_evaluations;
   const auto parameters = static_cast<double>(n_free());
   const double points = std::max<double>(1, static_cast<double>(searched_.t.size()));
   const double affordable = options_.max_work / (points * parameters * parameters);
@@ -314,6 +314,10 @@ Fit Fitter::finish() {
       fit.remarks.push_back(
           "The law has as many parameters as there are points: errors cannot be estimated.");
     }
+    if (options_.profiles && fit.dof > 0 && fit.residual_sum == 0 && !fit.sigma_given) {
+      fit.remarks.push_back(
+          "The law meets every point exactly: without scatter there are no errors or intervals.");
+    }
     if (any_fixed) remark_on_order(fit);
     judge(curve_, fit);
     const FittedCurveOf fitted{model_, curve_,     searched_,          values_,
@@ -325,14 +329,19 @@ Fit Fitter::finish() {
 }
 
 // The only remark on the limit of evaluations.
-void remark_on_budget(Fit& fit) {
+void remark_on_budget(long long allowed, const FitOptions& options, Fit& fit) {
   std::ostringstream text;
   text << "The fit stopped at its limit of evaluations (" << fit.total_evaluations
        << " evaluations of the law over the curve, for " << fit.n_points
        << (fit.n_bins > 0 ? " points in " + std::to_string(fit.n_bins) + " bins" : " points")
        << " and " << fit.n_free << (fit.n_free == 1 ? " parameter): " : " parameters): ")
        << (is_minimum(fit.reason) ? "unfinished intervals are open" : "no minimum was reached")
-       << ". Fix parameters, or choose a law of fewer.";
+       << ". ";
+  if (allowed < options.max_evaluations) {
+    text << "For more than " << few_parameters << " parameters the limit is below "
+         << options.max_evaluations << ", by the work of an evaluation. ";
+  }
+  text << "Fix parameters, or choose a law of fewer.";
   fit.remarks.push_back(text.str());
 }
 
@@ -374,7 +383,7 @@ std::variant<Fit, Refusal> fit(const Model& model, const Curve& curve, const Fit
   if (auto* found = std::get_if<Fit>(&outcome)) {
     found->total_evaluations = counted.solver.budget->used;
     const bool stopped = budget.spent() || found->reason == EndReason::budget;
-    if (outermost && stopped) remark_on_budget(*found);
+    if (outermost && stopped) remark_on_budget(allowed, options, *found);
   }
   return outcome;
 }

@@ -132,6 +132,9 @@ struct Fit {
   double reduced_chi2 = 0;   // residual_sum / dof; infinite without dof
   double r2 = 0;             // 1 - residual_sum / weighted sum about the weighted mean
   double condition = 0;      // condition of J^T J for columns of J of unit length
+  /// [n_parameters]: variance of each over that with the others held (variance inflation factor); 0
+  /// where it is fixed, or the curve does not depend on it.
+  std::vector<double> variance_inflation;
   /// Ratio of errors by the scatter around the law to those by the errors given, which are taken as
   /// exact; 1 where chi2 is not significantly above 1, or errors come from elsewhere.
   double scatter_ratio = 1;

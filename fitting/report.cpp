@@ -20,6 +20,16 @@ std::string number(double value, int digits) {
   return std::isfinite(value) ? number_text(value, digits) : "-";
 }
 
+// To four digits, or as many as distinguish it from 1.
+std::string r2_text(double r2) {
+  constexpr double least_distance = 1e-12;
+  if (!std::isfinite(r2)) return "-";
+  if (std::abs(r2) < rounding_of_r2) return "0";
+  int digits = 4;
+  while (1 - r2 > least_distance && number_text(r2, digits) == "1") ++digits;
+  return number_text(r2, digits);
+}
+
 // Columns as wide as their longest cell; texts to the left, numbers to the right.
 std::string table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
@@ -275,7 +285,7 @@ std::string describe(const Fit& fit, ReportDetail detail, const CurveUnits& unit
   }
   text << listed_units(fit, units) << "  " << basis_of_errors(fit) << "; reduced "
        << (fit.sigma_given ? "chi2 " : "residual sum ") << number(fit.reduced_chi2, 3) << ", R2 "
-       << number(std::abs(fit.r2) < rounding_of_r2 ? 0 : fit.r2, 4) << '\n';
+       << r2_text(fit.r2) << '\n';
   if (detail == ReportDetail::full) text << more_of_the_parameters(fit) << statistics(fit);
   for (const std::string& remark : fit.remarks) text << "  ! " << remark << '\n';
   return text.str();

@@ -79,13 +79,18 @@ bool is_lopsided(double value, double low, double high, double least, double mos
 
 std::string limits_text(double low, double high, int digits) {
   const bool has_lower = std::isfinite(low), has_upper = std::isfinite(high);
+  constexpr int all_digits = 17;
+  while (has_lower && has_upper && low < high && digits < all_digits &&
+         number_text(low, digits) == number_text(high, digits)) {
+    ++digits;
+  }
   if (has_lower && has_upper) return number_text(low, digits) + " to " + number_text(high, digits);
   if (has_lower) return "> " + number_text(low, digits);
   return has_upper ? "< " + number_text(high, digits) : "no limit";
 }
 
 std::string value_with_error(double value, double error, double scale) {
-  constexpr int most_digits = 6, most_digits_plain = 10;
+  constexpr int most_digits = 6;
   constexpr double smallest_plain = 1e-3, largest_plain = 1e7;
   constexpr double noise = 64 * std::numeric_limits<double>::epsilon(), rounding = 1e-11;
   if (!std::isfinite(value)) return number_text(value, most_digits);
@@ -95,7 +100,7 @@ std::string value_with_error(double value, double error, double scale) {
   if (!has_error) return number_text(value, most_digits);
   if (std::isinf(error)) return "no limit";
   const int decimals = 1 - exponent_of(error);
-  const bool short_enough = decimals <= (larger < smallest_plain ? most_digits : most_digits_plain);
+  const bool short_enough = larger >= smallest_plain || decimals <= most_digits;
   if (short_enough && larger < largest_plain) return in_last_digits(value, error, decimals);
   const int power = exponent_of(larger);
   const double unit = std::pow(10.0, power);

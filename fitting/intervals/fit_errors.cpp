@@ -132,6 +132,7 @@ void fill_covariance(const LinearProblem& problem, const std::vector<bool>& free
   const auto n = static_cast<Eigen::Index>(free.size());
   fit.covariance = Eigen::MatrixXd::Zero(n, n);
   fit.correlation = Eigen::MatrixXd::Zero(n, n);
+  fit.variance_inflation.assign(free.size(), 0);
   if (fit.n_free == 0) return;
   const InverseNormal inverse = inverse_normal(problem.jacobian);
   fit.condition = inverse.condition;
@@ -140,6 +141,8 @@ void fill_covariance(const LinearProblem& problem, const std::vector<bool>& free
   Eigen::Index a = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!free[static_cast<std::size_t>(i)]) continue;
+    fit.variance_inflation[static_cast<std::size_t>(i)] =
+        inverse.matrix(a, a) * problem.jacobian.col(a).squaredNorm();
     Eigen::Index b = 0;
     for (Eigen::Index j = 0; j < n; ++j) {
       if (!free[static_cast<std::size_t>(j)]) continue;

@@ -6,6 +6,7 @@
 #include "fitting/intervals/fit_errors.hpp"
 #include "fitting/intervals/fit_statistics.hpp"
 #include "fitting/numbers.hpp"
+#include "fitting/value_text.hpp"
 
 namespace jostle::inline fitting {
 
@@ -54,7 +55,9 @@ std::string statement(const Estimate& estimate) {
   const Interval& interval = estimate.intervals[1];
   const std::string& name = estimate.parameter.name;
   std::ostringstream text;
-  text.precision(4);
+  constexpr int digits = 4;
+  text.precision(digits);
+  const std::string limits = limits_text(interval.lower, interval.upper, digits);
   switch (estimate.identifiability) {
     case Identifiability::fixed:
       text << name << " is fixed at " << estimate.value;
@@ -63,11 +66,10 @@ std::string statement(const Estimate& estimate) {
       text << name << " was not examined";
       break;
     case Identifiability::identified:
-      text << name << " is identified: " << interval.lower << " to " << interval.upper << " (95 %)";
+      text << name << " is identified: " << limits << " (95 %)";
       break;
     case Identifiability::wide:
-      text << name << " is wide: " << interval.lower << " to " << interval.upper
-           << " fit the curve as well (95 %)";
+      text << name << " is wide: " << limits << " fit the curve as well (95 %)";
       break;
     case Identifiability::bounded_below:
       text << name << " has only a lower limit: " << name << " > " << interval.lower << " (95 %)";
@@ -97,37 +99,55 @@ bool is_loose(const Estimate& estimate) {
          estimate.identifiability == Identifiability::not_identifiable;
 }
 
-// Two parameters with a correlation of 0.98 have this one: below, what is loose is so by noise.
-constexpr double tied_condition = 100;
+// Two parameters with a correlation of 0.98 have these: below, what is loose is so by noise.
+constexpr double tied_condition = 100, tied_inflation = 25;
 constexpr double not_unique_condition = 1e3;
 
-// Lists unconstrained parameters, and those that can compensate each other.
-void remark_on_loose(Fit& fit) {
-  std::vector<std::string> names;
-  for (const Estimate& estimate : fit.estimates) {
-    if (is_loose(estimate)) names.push_back(estimate.parameter.name);
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i];
   }
+  return text;
+}
+
+void remark_on_tied(const std::vector<std::string>& names, Fit& fit) {
   if (names.empty()) return;
+  const bool partly = fit.condition < not_unique_condition;
   std::ostringstream text;
   text.precision(2);
-  const bool is_tied = fit.condition >= tied_condition;
-  text << (!is_tied                                ? "The data hardly constrain "
-           : fit.condition >= not_unique_condition ? "The parameters are not unique: "
-                                                   : "Parameters are correlated: ");
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    text << (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") << names[i];
-  }
-  if (!is_tied) {
-    fit.remarks.push_back(text.str() +
-                          ": few or noisy points; quote intervals, not standard errors.");
-    return;
-  }
-  const bool partly = fit.condition < not_unique_condition;
-  text << (partly ? " can partly make up for " : " can make up for ")
+  text << (partly ? "Parameters are correlated: " : "The parameters are not unique: ")
+       << listed(names) << (partly ? " can partly make up for " : " can make up for ")
        << (names.size() > 1 ? "each other" : "the others")
        << " over the range of t fitted (condition number " << fit.condition
        << "); quote intervals, not standard errors, and compare only fits over the same range.";
   fit.remarks.push_back(text.str());
+}
+
+// Lists unconstrained parameters by cause: without influence on the curve, compensated by others,
+// or lost in noise.
+void remark_on_loose(Fit& fit) {
+  std::vector<std::string> without_influence, tied, noisy;
+  for (std::size_t j = 0; j < fit.estimates.size(); ++j) {
+    const Estimate& estimate = fit.estimates[j];
+    if (!is_loose(estimate)) continue;
+    const double inflation = fit.variance_inflation[j];
+    const bool is_tied = fit.condition >= tied_condition && inflation >= tied_inflation;
+    (inflation == 0 ? without_influence
+     : is_tied      ? tied
+                    : noisy)
+        .push_back(estimate.parameter.name);
+  }
+  remark_on_tied(tied, fit);
+  if (!noisy.empty()) {
+    fit.remarks.push_back("The data hardly constrain " + listed(noisy) +
+                          ": few or noisy points; quote intervals, not standard errors.");
+  }
+  if (!without_influence.empty()) {
+    const std::string names = listed(without_influence);
+    fit.remarks.push_back("The curve does not change with small changes of " + names +
+                          ": errors and limits of " + names + " cannot be computed.");
+  }
 }
 
 void remark_on_memory(const Curve& curve, Fit& fit) {

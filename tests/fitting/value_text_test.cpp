@@ -36,6 +36,7 @@ TEST_CASE("an error refers to the last digits of its value") {
   CHECK(value_with_error(0.5, 0.00996) == "0.500(10)");  // to its second digit as printed
   CHECK(value_with_error(2.0487283e-06, 7.4e-07) == "2.05(74)e-06");
   CHECK(value_with_error(0.593890243, 2.8e-7) == "0.59389024(28)");
+  CHECK(value_with_error(0.23, 2.7e-11) == "0.230000000000(27)");
   CHECK(value_with_error(1.25e9, 3e6) == "1.2500(30)e+09");
 }
 
@@ -89,7 +90,7 @@ TEST_CASE("rounding noise is 0 beside the scale of what is measured") {
   CHECK(value_with_error(0.6 - 0.65, 3e-15) == "-0.05");
   CHECK(value_with_error(12345.678901234567, 1e-12) == "12345.7");
   CHECK(value_with_error(0.600857966880045, 2.2e-14) == "0.600858");
-  CHECK(value_with_error(0.600857966880045, 2.2e-11) == "6.00857966880(22)e-01");
+  CHECK(value_with_error(0.600857966880045, 2.2e-11) == "0.600857966880(22)");
   CHECK(value_with_error(1e-9 / 3, 1e-27, 1e-9) == "3.33333e-10");
 }
 
@@ -134,6 +135,9 @@ TEST_CASE("over all decades and signs a text has the value and its error to two 
 
 TEST_CASE("limits are written in words") {
   CHECK(limits_text(0.57431, 0.61, 5) == "0.57431 to 0.61");
+  CHECK(limits_text(0.6093812, 0.6093843, 5) == "0.609381 to 0.609384");
+  CHECK(limits_text(0.58, 0.58, 5) == "0.58 to 0.58");
+  CHECK(limits_text(1, 1 + 3e-16, 5) == "1 to 1.0000000000000002");
   CHECK(limits_text(0.57431, infinity, 5) == "> 0.57431");
   CHECK(limits_text(-infinity, 0.61, 5) == "< 0.61");
   CHECK(limits_text(-infinity, infinity, 5) == "no limit");
