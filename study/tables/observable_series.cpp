@@ -82,6 +82,21 @@ std::string ObservableSeries::copies() const {
   return copies_text(n_copies_, used_.size());
 }
 
+Repetitions repetitions(const ResultsFile& file, std::uint32_t point) {
+  const std::vector<Column> columns = file.columns(point);
+  if (columns.empty()) return {};
+  const ObservableSeries series(file, point, columns.front().name);
+  Repetitions found{.text = series.copies()};
+  if (found.text.empty()) return found;
+  for (const RealizationSummary& summary : file.realizations()) {
+    if (summary.id.point == point &&
+        !std::ranges::binary_search(series.realizations(), summary.id.realization)) {
+      found.realizations.push_back(summary.id.realization);
+    }
+  }
+  return found;
+}
+
 std::string ObservableSeries::held_back() const {
   if (used_.empty()) return {};
   const auto [least, most] = std::ranges::minmax_element(reached_);

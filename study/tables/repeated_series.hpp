@@ -26,4 +26,12 @@ std::vector<std::uint32_t> distinct_realizations(const ResultsFile& file, std::u
 /// copies.
 std::string copies_text(std::size_t n_copies, std::size_t n_distinct);
 
+/// Realizations of a sweep point that repeat an earlier one: the packings and displacements of a
+/// copy repeat those of the first, too.
+struct Repetitions {
+  std::vector<std::uint32_t> realizations{};  // ascending
+  std::string text{};                         // copies_text()
+};
+Repetitions repetitions(const ResultsFile& file, std::uint32_t point);
+
 }  // namespace jostle::inline study

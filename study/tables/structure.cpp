@@ -21,6 +21,7 @@
 #include "results/export/particle_columns.hpp"
 #include "results/groups/layout.hpp"
 #include "study/bad_input.hpp"
+#include "study/tables/repeated_series.hpp"
 
 namespace jostle::inline study {
 
@@ -34,7 +35,8 @@ struct KeptPacking {
 
 /// The packings of one ensemble, read realization by realization.
 struct KeptEnsemble {
-  std::string name;  // for messages
+  std::string name;    // for messages
+  std::string copies;  // text of realizations left out because they repeat another
   std::vector<std::uint64_t> taps;
   std::uint32_t realizations = 0;
   std::function<std::vector<KeptPacking>(std::uint32_t realization)> read;  // one call at a time
@@ -210,15 +212,18 @@ std::vector<std::uint64_t> kept_taps(const ResultsFile& file, std::uint32_t poin
 }
 
 KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
+  const Repetitions repeated = repetitions(file, point);
   const Container& container = file.study().points[point].container;
   KeptEnsemble ensemble{.name = fmt::format("{}, sweep point {}", file.path(), point),
+                        .copies = repeated.text,
                         .taps = kept_taps(file, point),
                         .realizations = file.study().realizations,
                         .read = {},
                         .seed = file.study().points[point].seed,
                         .sweep_point = file.study().points[point].id};
-  ensemble.read = [&file, &container, point](std::uint32_t r) {
+  ensemble.read = [&file, &container, point, left_out = repeated.realizations](std::uint32_t r) {
     std::vector<KeptPacking> packings;
+    if (std::ranges::binary_search(left_out, r)) return packings;
     for (SnapshotRecord& snapshot : file.positions({point, r})) {
       packings.push_back(
           {snapshot.tap, {container, std::move(snapshot.centres), file.sizes({point, r})}});
@@ -289,6 +294,7 @@ std::vector<Table> structure_of(const ResultsFile& file, std::span<const std::ui
       numbers.push_back(packing_numbers(label, point, structure));
     }
     for (Table& table : of_point) {
+      if (!ensemble.copies.empty()) table.notes.emplace_back("copies", ensemble.copies);
       if (!label.empty()) table.notes.insert(table.notes.begin(), {"sweep_point", label});
       tables.push_back(std::move(table));
     }
@@ -326,6 +332,7 @@ std::vector<Table> structure_of(std::span<const std::string> files,
     }
   }
   KeptEnsemble ensemble{.name = joined({files.begin(), files.end()}, ", "),
+                        .copies = {},
                         .taps = {},
                         .realizations = static_cast<std::uint32_t>(files.size()),
                         .read = {},

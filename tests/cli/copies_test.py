@@ -59,6 +59,24 @@ class Copies(Case):
                                        "--no-store", "--json").stdout)["curves"][0]
         self.assertEqual((found["notes"], found["realizations"]), ([COPIES + "."], 1))
 
+    def test_copies_of_displacements_and_packings_count_once(self):
+        self.write(changed(CRYSTAL, protocol=[{"tap": {"half_sine": {}}, "count": 10}], snapshots={"taps": [0, 10]},
+                           motion={"origins": [1], "lags": [1, 5]}, structure={"layers": {}}))
+        self.run_scene()
+        motion = self.table("crystal.h5", "motion")
+        structure = json.loads(self.jostle("structure", "crystal.h5", "--part", "layers", "--no-store",
+                                           "--json").stdout)["tables"][0]
+        for table, name in ((motion, "msd_lateral"), (structure, "grown_layers")):
+            self.assertEqual(table["notes"]["copies"], COPIES)
+            self.assertEqual({*np.ravel(table["quantities"]["realizations"]["values"]).tolist()}, {1})
+            self.assertEqual({*np.ravel(table["quantities"][name + "_dof"]["values"]).tolist()}, {0})
+        self.write(changed(SINGLE, motion={"origins": [1], "lags": [1, 2]}, structure={"layers": {}}))
+        self.run_scene()
+        self.assertNotIn("copies", self.table("tiny.h5", "motion")["notes"])
+        with h5py.File(self.folder / "tiny.h5") as results:
+            self.assertEqual(results["structure/point_0000/layers/realizations"][:].tolist(), [3, 3])
+            self.assertNotIn("note_copies", results["structure/point_0000/layers"].attrs)
+
     def test_a_random_start_is_not_warned_of(self):
         self.write(changed(CRYSTAL, start={"pour": "steepest_descent"},
                            container={"sides": "periodic", "width": 3}, spheres=20))
