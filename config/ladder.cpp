@@ -245,20 +245,15 @@ class RelaxationLadder : LadderMaker {
         AnyMove rung = move;
         double& value = rung.*number.member;
         value = rounded(value * factor);
-        if (!number.form.range.contains(value) || rung.max_step > longest_step()) continue;
+        if (!number.form.range.contains(value)) continue;
+        // A step may not pass the smallest sphere of a mixture.
+        if (!scene_.kinds.empty() && rung.max_step > 2 * range_of(scene_.kinds).least) continue;
         Relaxation relax = scene_.relax;
         relax.move = rung;
         add(PilotSetting::Part::step, finite_text("{} = {:.3g}", number.notes.ladder_symbol, value),
             relax);
       }
     }
-  }
-
-  /// Steps may not pass the smallest sphere of a mixture.
-  double longest_step() const {
-    return scene_.kinds.empty()
-               ? step_length_range.high
-               : std::min(step_length_range.high, 2 * range_of(scene_.kinds).least);
   }
 
   void adaptations(const MetropolisMove& move) {
