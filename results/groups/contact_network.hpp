@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/bed/bed_mechanics.hpp"
+#include "engine/bed/container.hpp"
 #include "results/hdf5/handle.hpp"
 
 namespace jostle::inline results {
