@@ -25,7 +25,7 @@
 namespace jostle::bench {
 namespace {
 
-/// Of this process and of those that it starts, as a digest does.
+/// Processor time of this process and of those that it starts, as a digest does.
 double processor_seconds(const std::function<void()>& work) {
   const auto now = [] {
     const auto seconds = [](const timeval& t) {
