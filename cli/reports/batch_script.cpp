@@ -81,6 +81,8 @@ for ((shard = (SLURM_ARRAY_TASK_ID - 1) * a_task + 1, last = shard + a_task - 1;
   run=$!
   [ -z "$stopped" ] || kill -s "$stopped" "$run"
   while interrupted=; wait "$run"; code=$?; [ -n "$interrupted" ]; do :; done
+  # Bash loses the code of a run that ends just as a signal arrives (-1 or 127): a resume finds what is left.
+  if [ -n "$stopped" ] && { [ "$code" = -1 ] || [ "$code" = 127 ]; }; then code=75; fi
   run=
   case $code in
     0) log_line "shard $shard of $shards is done" ;;
