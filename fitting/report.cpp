@@ -22,12 +22,10 @@ std::string number(double value, int digits) {
 
 // To four digits, or as many as distinguish it from 1.
 std::string r2_text(double r2) {
-  constexpr double least_distance = 1e-12;
+  constexpr int most_digits = 12;
   if (!std::isfinite(r2)) return "-";
   if (std::abs(r2) < rounding_of_r2) return "0";
-  int digits = 4;
-  while (1 - r2 > least_distance && number_text(r2, digits) == "1") ++digits;
-  return number_text(r2, digits);
+  return number_text(r2, distinguishing_digits(r2, 1, 4, most_digits));
 }
 
 // Columns as wide as their longest cell; texts to the left, numbers to the right.

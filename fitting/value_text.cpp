@@ -57,13 +57,19 @@ std::string number_text(double value, int digits) {
   return in_format(value, std::chars_format::general, digits);
 }
 
+int distinguishing_digits(double a, double b, int digits, int most) {
+  while (a != b && digits < most && number_text(a, digits) == number_text(b, digits)) ++digits;
+  return digits;
+}
+
+int probability_digits(double p) {
+  constexpr double level = 0.05;
+  return distinguishing_digits(p, level, 2, 6);
+}
+
 std::string probability_text(double p) {
   if (p < smallest_p) return "< " + number_text(smallest_p, 1);
-  // No probability is rounded to the level of the tests from either side.
-  constexpr double level = 0.05;
-  int digits = 2;
-  while (p != level && digits < 6 && number_text(p, digits) == number_text(level, 2)) ++digits;
-  return number_text(p, digits);
+  return number_text(p, probability_digits(p));
 }
 
 std::string p_value_text(double p) {
@@ -79,12 +85,10 @@ bool is_lopsided(double value, double low, double high, double least, double mos
 
 std::string limits_text(double low, double high, int digits) {
   const bool has_lower = std::isfinite(low), has_upper = std::isfinite(high);
-  constexpr int all_digits = 17;
-  while (has_lower && has_upper && low < high && digits < all_digits &&
-         number_text(low, digits) == number_text(high, digits)) {
-    ++digits;
+  if (has_lower && has_upper) {
+    digits = distinguishing_digits(low, high, digits);
+    return number_text(low, digits) + " to " + number_text(high, digits);
   }
-  if (has_lower && has_upper) return number_text(low, digits) + " to " + number_text(high, digits);
   if (has_lower) return "> " + number_text(low, digits);
   return has_upper ? "< " + number_text(high, digits) : "no limit";
 }

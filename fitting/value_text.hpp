@@ -30,7 +30,10 @@ std::string limits_text(double low, double high, int digits);
 /// p-values below are not distinguished: tails of distributions are not known so far out.
 inline constexpr double smallest_p = 1e-16;
 
-/// "0.019" or "< 1e-16": a p-value without its name, with two digits; "-" for NaN.
+/// Digits of a p-value in print: two, or as many as distinguish it from 0.05, the level of tests.
+int probability_digits(double p);
+
+/// "0.019" or "< 1e-16": a p-value without its name; "-" for NaN.
 std::string probability_text(double p);
 
 /// "p = 0.019" or "p < 1e-16".
@@ -39,5 +42,8 @@ std::string p_value_text(double p);
 /// The value with so many significant digits; "-" where it is no number, else "infinite" or
 /// "-infinite" where it is not finite.
 std::string number_text(double value, int digits);
+
+/// Digits, at least `digits` and at most `most`, with which number_text() tells two numbers apart.
+int distinguishing_digits(double a, double b, int digits, int most = 17);
 
 }  // namespace jostle::inline fitting

@@ -88,7 +88,7 @@ std::string typeset_with_error(double value, double error) {
 }
 
 std::string typeset_probability(double p) {
-  if (!(p < smallest_p)) return typeset_number(p, 2);
+  if (!(p < smallest_p)) return typeset_number(p, probability_digits(p));
   return "< 10" + superscript(exponent_of(smallest_p, 1));
 }
 

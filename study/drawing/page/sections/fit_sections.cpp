@@ -36,12 +36,7 @@ std::string interval(double low, double high) {
   if (!std::isfinite(low) && !std::isfinite(high)) return "no limit";
   if (!std::isfinite(high)) return "above " + typeset_number(low);
   if (!std::isfinite(low)) return "below " + typeset_number(high);
-  int digits = 4;
-  constexpr int all_digits = 17;
-  while (low < high && digits < all_digits &&
-         typeset_number(low, digits) == typeset_number(high, digits)) {
-    ++digits;
-  }
+  const int digits = distinguishing_digits(low, high, 4);
   return typeset_number(low, digits) + " to " + typeset_number(high, digits);
 }
 
