@@ -43,7 +43,7 @@ std::string p_value_text(double p);
 /// "-infinite" where it is not finite.
 std::string number_text(double value, int digits);
 
-/// Digits, at least `digits` and at most `most`, with which number_text() tells two numbers apart.
+/// Digits, at least `digits` and at most `most`, for which the number_text() of two numbers differ.
 int distinguishing_digits(double a, double b, int digits, int most = 17);
 
 }  // namespace jostle::inline fitting

@@ -48,3 +48,9 @@ TEST_CASE("numbers are shown as in the shared vectors") {
     CHECK(typeset_duration(sample.at(0).number()) == sample.at(1).text());
   }
 }
+
+TEST_CASE("The page rounds no p-value to the level of its test") {
+  CHECK(typeset_p(0.0495) == "p = 0.0495");
+  CHECK(typeset_p(0.0512) == "p = 0.051");
+  CHECK(typeset_p(0.0193) == "p = 0.019");
+}
