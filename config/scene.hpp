@@ -112,21 +112,22 @@ struct MotionChoice {
   std::uint32_t layers = 5;
   bool operator==(const MotionChoice&) const = default;
 
+  template <class Self = MotionChoice>
   static constexpr auto fields() {
     return std::tuple{
-        field("origins", &MotionChoice::origins, TapNumbers{},
+        field("origins", &Self::origins, TapNumbers{},
               "Taps that displacements are counted from, the waiting times, at most 1000; 0 is the "
               "start. Each keeps the centres of all spheres, 24 bytes per sphere. Default: 0 and "
               "two per decade"),
         field(
-            "lags", &MotionChoice::lags, TapNumbers{},
+            "lags", &Self::lags, TapNumbers{},
             "Taps after an origin at which they are measured, at most 1000, the first at least 1. "
             "Default: ten per decade"),
-        field("overlap_lengths", &MotionChoice::overlap_lengths,
+        field("overlap_lengths", &Self::overlap_lengths,
               list_of(Number{left_open_range(0, 100)}, 1, most_overlap_lengths,
                       "lengths in diameters", true),
               "Lengths a in diameters: the overlap is the fraction of spheres that moved less"),
-        field("layers", &MotionChoice::layers, Whole{1, most_motion_layers},
+        field("layers", &Self::layers, Whole{1, most_motion_layers},
               "Layers of equal numbers of spheres, by height at the origin")};
   }
 };
@@ -160,11 +161,11 @@ struct AnalysisRequest {
   Settings settings;
   bool operator==(const AnalysisRequest&) const = default;
 
+  template <class Self = AnalysisRequest>
   static constexpr auto fields() {
-    return std::tuple{
-        field("observable", &AnalysisRequest::observable, Text{}, "One that the scene observes",
-              {.required = "the name of an observable of this scene"}),
-        inlined(&AnalysisRequest::settings)};
+    return std::tuple{field("observable", &Self::observable, Text{}, "One that the scene observes",
+                            {.required = "the name of an observable of this scene"}),
+                      inlined(&Self::settings)};
   }
 };
 
@@ -191,11 +192,12 @@ struct Analyses {
 
   /// Later kinds are written only where there are any, so that runs of earlier versions can be
   /// resumed.
+  template <class Self = Analyses>
   static constexpr auto fields() {
-    return std::tuple{asked_for(&Analyses::steady),        asked_for(&Analyses::spectrum),
-                      asked_for(&Analyses::ageing),        asked_for(&Analyses::hysteresis),
-                      asked_for(&Analyses::sweep),         asked_for(&Analyses::ordering, true),
-                      asked_for(&Analyses::volumes, true), asked_for(&Analyses::memory, true)};
+    return std::tuple{asked_for(&Self::steady),        asked_for(&Self::spectrum),
+                      asked_for(&Self::ageing),        asked_for(&Self::hysteresis),
+                      asked_for(&Self::sweep),         asked_for(&Self::ordering, true),
+                      asked_for(&Self::volumes, true), asked_for(&Self::memory, true)};
   }
   bool empty() const { return *this == Analyses{}; }
 };

@@ -26,8 +26,9 @@ struct Dilate {
 
   static constexpr Description description{
       .name = "dilate", .text = "epsilon: z -> z (1 + epsilon)", .symbol = "ε"};
+  template <class Self = Dilate>
   static constexpr auto fields() {
-    return std::tuple{field("", &Dilate::epsilon, dilation_strength, "", {.examples = "[0.02]"})};
+    return std::tuple{field("", &Self::epsilon, dilation_strength, "", {.examples = "[0.02]"})};
   }
 };
 
@@ -42,9 +43,9 @@ struct DilateFloorHeld {
       .name = "dilate_floor_held",
       .text = "Delta: (z - 1/2) -> (z - 1/2)(1 + Delta); spheres on the floor keep their height",
       .symbol = "Δ"};
+  template <class Self = DilateFloorHeld>
   static constexpr auto fields() {
-    return std::tuple{
-        field("", &DilateFloorHeld::delta, dilation_strength, "", {.examples = "[0.025]"})};
+    return std::tuple{field("", &Self::delta, dilation_strength, "", {.examples = "[0.025]"})};
   }
 };
 
@@ -55,8 +56,9 @@ struct Lift {
 
   static constexpr Description description{
       .name = "lift", .text = "gamma: z -> z + gamma, diameters", .symbol = "γ"};
+  template <class Self = Lift>
   static constexpr auto fields() {
-    return std::tuple{field("", &Lift::gamma, Strength{closed_range(0, 100), "diameters"}, "",
+    return std::tuple{field("", &Self::gamma, Strength{closed_range(0, 100), "diameters"}, "",
                             {.examples = "[0.25]"})};
   }
 };
@@ -72,12 +74,13 @@ struct Shake {
 
   static constexpr Description description{
       "shake", "z -> z (1 + lambda), then random lateral offsets that never overlap"};
+  template <class Self = Shake>
   static constexpr auto fields() {
     return std::tuple{
-        field("lambda", &Shake::lambda, dilation_strength),
-        field("lateral_radius", &Shake::lateral_radius, Number{closed_range(0, 1), "diameters"},
+        field("lambda", &Self::lambda, dilation_strength),
+        field("lateral_radius", &Self::lateral_radius, Number{closed_range(0, 1), "diameters"},
               "Radius of the disc of the lateral offsets"),
-        field("retries", &Shake::retries, Whole{0, 1000},
+        field("retries", &Self::retries, Whole{0, 1000},
               "How often an offset that would overlap is drawn again before it is dropped")};
   }
 };
@@ -127,10 +130,11 @@ struct Vibration {
 
   static constexpr Description description{
       "vibration", "The floor moves as a sin(2 pi f t) for whole periods. Discrete elements"};
+  template <class Self = Vibration>
   static constexpr auto fields() {
     return std::tuple_cat(
         floor_fields<Vibration>(),
-        std::tuple{field("cycles", &Vibration::cycles, Whole{1, most_cycles}, "Whole periods")});
+        std::tuple{field("cycles", &Self::cycles, Whole{1, most_cycles}, "Whole periods")});
   }
 };
 

@@ -25,15 +25,15 @@ struct SpreadTarget {
   double at_most = 0;  // in units of the observable
   bool operator==(const SpreadTarget&) const = default;
 
+  template <class Self = SpreadTarget>
   static constexpr auto fields() {
     return std::tuple{
-        field("observable", &SpreadTarget::observable, Text{}, "One that the scene observes",
+        field("observable", &Self::observable, Text{}, "One that the scene observes",
               {.required = "the name of an observable of this scene"}),
-        field("taps", &SpreadTarget::taps, TapNumbers{},
+        field("taps", &Self::taps, TapNumbers{},
               "Where the spread must be small; none: at the last tap"),
         keyed_number<SpreadTarget, Spread, 2>(
-            &SpreadTarget::at_most, &SpreadTarget::spread, spread_names,
-            {spread_number, spread_number},
+            &Self::at_most, &Self::spread, spread_names, {spread_number, spread_number},
             {"Standard error of the mean over realizations, at most",
              "Population deviation of realizations, at most. It does not shrink with their number"},
             true)};
@@ -46,13 +46,12 @@ struct TargetPrecision {
   std::uint32_t at_most = 0;
   bool operator==(const TargetPrecision&) const = default;
 
+  template <class Self = TargetPrecision>
   static constexpr auto fields() {
     return std::tuple{
-        field("targets", &TargetPrecision::targets,
-              list_of(Object<SpreadTarget>{}, 1, 100, "targets"), "",
+        field("targets", &Self::targets, list_of(Object<SpreadTarget>{}, 1, 100, "targets"), "",
               {.required = "a list of observables and how small their spread must be"}),
-        field("at_most", &TargetPrecision::at_most, Whole{1, 1'000'000},
-              "Realizations of every sweep point",
+        field("at_most", &Self::at_most, Whole{1, 1'000'000}, "Realizations of every sweep point",
               {.required = "the largest number of realizations"})};
   }
 };

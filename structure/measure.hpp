@@ -31,13 +31,14 @@ struct ProfileSettings {
 
   static constexpr Description description{"profile",
                                            "Packing fraction against height, its gradient, eq. 7"};
+  template <class Self = ProfileSettings>
   static constexpr auto fields() {
     return std::tuple{
-        field("bin_width", &ProfileSettings::bin_width, Number{bin_width_range, "diameters"},
+        field("bin_width", &Self::bin_width, Number{bin_width_range, "diameters"},
               "Width of a bin"),
-        field("smoothing", &ProfileSettings::smoothing, Number{closed_range(0, 10)},
+        field("smoothing", &Self::smoothing, Number{closed_range(0, 10)},
               "Boxcar of the smoothed profile and the gradient, diameters; 0 for none"),
-        field("gradient", &ProfileSettings::gradient, height_bounds,
+        field("gradient", &Self::gradient, height_bounds,
               "Heights of the gradient; absent: 2.5 to 11 between walls, to 13 with periodic "
               "sides")};
   }
@@ -52,14 +53,14 @@ struct SidesSettings {
 
   static constexpr Description description{
       "sides", "Packing fraction from side to side, from the walls, from the axis"};
+  template <class Self = SidesSettings>
   static constexpr auto fields() {
     return std::tuple{
-        field("bin_width", &SidesSettings::bin_width, Number{bin_width_range, "diameters"},
+        field("bin_width", &Self::bin_width, Number{bin_width_range, "diameters"},
               "Width of a bin"),
-        field("reach", &SidesSettings::reach, Number{left_open_range(0, 1e6), "diameters"},
+        field("reach", &Self::reach, Number{left_open_range(0, 1e6), "diameters"},
               "Depth of the lateral region, from a wall"),
-        field("heights", &SidesSettings::heights, height_bounds,
-              "Low and high; absent: 2 to 0.8 of 2<Z>")};
+        field("heights", &Self::heights, height_bounds, "Low and high; absent: 2 to 0.8 of 2<Z>")};
   }
 };
 
@@ -70,10 +71,11 @@ struct LayersSettings {
   bool operator==(const LayersSettings&) const = default;
 
   static constexpr Description description{"layers", "n(z) and the layers grown from the floor"};
+  template <class Self = LayersSettings>
   static constexpr auto fields() {
-    return std::tuple{field("bin_width", &LayersSettings::bin_width,
-                            Number{bin_width_range, "diameters"}, "Width of bins of n(z)"),
-                      inlined(&LayersSettings::rule)};
+    return std::tuple{field("bin_width", &Self::bin_width, Number{bin_width_range, "diameters"},
+                            "Width of bins of n(z)"),
+                      inlined(&Self::rule)};
   }
 };
 
@@ -84,14 +86,14 @@ struct CoordinationSettings {
 
   static constexpr Description description{"coordination",
                                            "Neighbours within a cut, and against the cut"};
+  template <class Self = CoordinationSettings>
   static constexpr auto fields() {
-    return std::tuple{
-        field("cut", &CoordinationSettings::cut, Number{closed_range(1, 3), "diameters"},
-              "Distance of the centres of neighbours, at most"),
-        field("largest_cut", &CoordinationSettings::largest_cut,
-              Number{closed_range(1, 3), "diameters"}, "Range of the curve above 1"),
-        field("step", &CoordinationSettings::step, Number{closed_range(0.001, 1), "diameters"},
-              "Step of the curve of neighbours against the cut")};
+    return std::tuple{field("cut", &Self::cut, Number{closed_range(1, 3), "diameters"},
+                            "Distance of the centres of neighbours, at most"),
+                      field("largest_cut", &Self::largest_cut,
+                            Number{closed_range(1, 3), "diameters"}, "Range of the curve above 1"),
+                      field("step", &Self::step, Number{closed_range(0.001, 1), "diameters"},
+                            "Step of the curve of neighbours against the cut")};
   }
 };
 
@@ -102,10 +104,11 @@ struct PairsSettings {
 
   static constexpr Description description{"pair_correlation",
                                            "g(r), corrected for floor, surface and sides"};
+  template <class Self = PairsSettings>
   static constexpr auto fields() {
-    return std::tuple{field("bin_width", &PairsSettings::bin_width,
+    return std::tuple{field("bin_width", &Self::bin_width,
                             Number{closed_range(0.001, 1), "diameters"}, "Width of a bin"),
-                      field("r_max", &PairsSettings::r_max, Number{closed_range(1, 20)},
+                      field("r_max", &Self::r_max, Number{closed_range(1, 20)},
                             "Diameters. Default: 4, at most half a period")};
   }
 };
@@ -117,8 +120,9 @@ struct OrderSettings {
 
   static constexpr Description description{
       "order", "q4, q6, w6; fcc, hcp and disordered spheres, by height"};
+  template <class Self = OrderSettings>
   static constexpr auto fields() {
-    return std::tuple{field("bin_width", &OrderSettings::bin_width,
+    return std::tuple{field("bin_width", &Self::bin_width,
                             Number{closed_range(0.1, 1000), "diameters"}, "Bin width of heights")};
   }
 };
@@ -136,18 +140,18 @@ struct GapsSettings {
       "gaps",
       "Gaps between neighbours and their exponent, contacts, rattlers, "
       "against the gap that counts as a contact"};
+  template <class Self = GapsSettings>
   static constexpr auto fields() {
     return std::tuple{
-        field("largest", &GapsSettings::largest, Number{closed_range(0.01, 2), "diameters"},
+        field("largest", &Self::largest, Number{closed_range(0.01, 2), "diameters"},
               "Gap that is counted"),
-        field("tolerance", &GapsSettings::tolerance, Number{closed_range(0, 0.2)},
+        field("tolerance", &Self::tolerance, Number{closed_range(0, 0.2)},
               "Gap up to which spheres touch, diameters: of the single values"),
-        field("least_contacts", &GapsSettings::least_contacts, Whole{1, 12},
+        field("least_contacts", &Self::least_contacts, Whole{1, 12},
               "Contacts of a sphere that is not a rattler, at least. Default: 3 in beds, which "
               "have weight; "
               "4 in a fully periodic box, which has none"),
-        field("window", &GapsSettings::window,
-              Bounds{left_open_range(0, 1e6), closed_range(0, 1e6)},
+        field("window", &Self::window, Bounds{left_open_range(0, 1e6), closed_range(0, 1e6)},
               "Gaps whose exponent is sought, diameters; low below high, and above 0, which has no "
               "logarithm")};
   }
@@ -161,14 +165,14 @@ struct VoronoiSettings {
 
   static constexpr Description description{
       "voronoi", "Faces, volumes and free volumes of cells, local packing fractions"};
+  template <class Self = VoronoiSettings>
   static constexpr auto fields() {
-    return std::tuple{
-        field("least_area", &VoronoiSettings::least_area, Number{closed_range(0, 0.1)},
-              "Least area of a counted face, in surfaces of its cell"),
-        field("bin_width", &VoronoiSettings::bin_width, Number{closed_range(0.001, 1)},
-              "Width of bins of free volumes, in volumes of a sphere"),
-        field("cut_cells", &VoronoiSettings::cut_cells, Flag{},
-              "Cells that are cut by floor, sides or lid are counted, too")};
+    return std::tuple{field("least_area", &Self::least_area, Number{closed_range(0, 0.1)},
+                            "Least area of a counted face, in surfaces of its cell"),
+                      field("bin_width", &Self::bin_width, Number{closed_range(0.001, 1)},
+                            "Width of bins of free volumes, in volumes of a sphere"),
+                      field("cut_cells", &Self::cut_cells, Flag{},
+                            "Cells that are cut by floor, sides or lid are counted, too")};
   }
 };
 
@@ -179,9 +183,10 @@ struct ClustersSettings {
 
   static constexpr Description description{
       "clusters", "Volumes of clusters of Voronoi cells against their number"};
+  template <class Self = ClustersSettings>
   static constexpr auto fields() {
-    return std::tuple{field("largest", &ClustersSettings::largest, Whole{1, 10'000},
-                            "Cells of the largest cluster")};
+    return std::tuple{
+        field("largest", &Self::largest, Whole{1, 10'000}, "Cells of the largest cluster")};
   }
 };
 
@@ -194,17 +199,16 @@ struct PoresSettings {
 
   static constexpr Description description{
       "pores", "Sizes of pores, sites of close packing, the exponential tail"};
+  template <class Self = PoresSettings>
   static constexpr auto fields() {
     return std::tuple{
-        field("bin_width", &PoresSettings::bin_width, Number{closed_range(0.001, 0.5)},
-              "Bin width of xi"),
-        field("largest", &PoresSettings::largest, Number{closed_range(0.5, 10)},
-              "xi of the last bin"),
-        field("merge", &PoresSettings::merge, Number{closed_range(0, 0.1), "diameters"},
+        field("bin_width", &Self::bin_width, Number{closed_range(0.001, 0.5)}, "Bin width of xi"),
+        field("largest", &Self::largest, Number{closed_range(0.5, 10)}, "xi of the last bin"),
+        field("merge", &Self::merge, Number{closed_range(0, 0.1), "diameters"},
               "Vertices so close are one pore"),
-        field("tolerance", &PoresSettings::tolerance, Number{closed_range(0, 0.1)},
+        field("tolerance", &Self::tolerance, Number{closed_range(0, 0.1)},
               "Tolerance of tetrahedral and octahedral sites, in xi"),
-        field("tail_from", &PoresSettings::tail_from, Number{closed_range(0, 100)},
+        field("tail_from", &Self::tail_from, Number{closed_range(0, 100)},
               "v at which the tail begins")};
   }
 };
@@ -216,12 +220,12 @@ struct VoidSettings {
   bool operator==(const VoidSettings&) const = default;
 
   static constexpr Description description{"void_probability", "P0(sigma) beside Gotoh's"};
+  template <class Self = VoidSettings>
   static constexpr auto fields() {
     return std::tuple{
-        field("largest", &VoidSettings::largest, Number{closed_range(0.1, 5)}, "sigma"),
-        field("step", &VoidSettings::step, Number{closed_range(0.001, 1)}, "Step of sigma"),
-        field("points", &VoidSettings::points, Whole{100, 1'000'000'000},
-              "Random points per packing")};
+        field("largest", &Self::largest, Number{closed_range(0.1, 5)}, "sigma"),
+        field("step", &Self::step, Number{closed_range(0.001, 1)}, "Step of sigma"),
+        field("points", &Self::points, Whole{100, 1'000'000'000}, "Random points per packing")};
   }
 };
 
@@ -230,7 +234,10 @@ struct HolesSettings {
   bool operator==(const HolesSettings&) const = default;
 
   static constexpr Description description{"holes", "Bernal's canonical holes"};
-  static constexpr auto fields() { return std::tuple{inlined(&HolesSettings::bonds)}; }
+  template <class Self = HolesSettings>
+  static constexpr auto fields() {
+    return std::tuple{inlined(&Self::bonds)};
+  }
 };
 
 /// The field of a part, which has the part's name.
@@ -258,24 +265,25 @@ struct StructureSettings {
   std::optional<HolesSettings> holes = std::nullopt;
   bool operator==(const StructureSettings&) const = default;
 
+  template <class Self = StructureSettings>
   static constexpr auto fields() {
     return std::tuple{
-        field("region", &StructureSettings::region, Object<Region>{},
+        field("region", &Self::region, Object<Region>{},
               "Where spheres, cells, pores and holes are counted; absent: heights 1 to 10 but at "
               "most 2<Z> - 1, 1 away from walls; all of a fully periodic box"),
-        measured(&StructureSettings::profile),
-        measured(&StructureSettings::sides),
-        measured(&StructureSettings::layers),
-        measured(&StructureSettings::coordination),
-        measured(&StructureSettings::pair_correlation),
-        measured(&StructureSettings::order),
-        measured(&StructureSettings::gaps),
-        measured(&StructureSettings::structure_factor),
-        measured(&StructureSettings::voronoi),
-        measured(&StructureSettings::clusters),
-        measured(&StructureSettings::pores),
-        measured(&StructureSettings::void_probability),
-        measured(&StructureSettings::holes)};
+        measured(&Self::profile),
+        measured(&Self::sides),
+        measured(&Self::layers),
+        measured(&Self::coordination),
+        measured(&Self::pair_correlation),
+        measured(&Self::order),
+        measured(&Self::gaps),
+        measured(&Self::structure_factor),
+        measured(&Self::voronoi),
+        measured(&Self::clusters),
+        measured(&Self::pores),
+        measured(&Self::void_probability),
+        measured(&Self::holes)};
   }
   bool empty() const { return *this == StructureSettings{}; }
 };

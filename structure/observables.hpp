@@ -50,8 +50,9 @@ struct CorrectedFraction {
       .name = "corrected_fraction",
       .text = "<Phi_c>, packing fraction up to depth x 2<Z>, corrected at the floor by 16/11",
       .symbol = "⟨Φ_c⟩"};
+  template <class Self = CorrectedFraction>
   static constexpr auto fields() {
-    return std::tuple{field("depth", &CorrectedFraction::depth, Number{left_open_range(0, 1)})};
+    return std::tuple{field("depth", &Self::depth, Number{left_open_range(0, 1)})};
   }
 };
 
@@ -66,15 +67,16 @@ struct BulkFraction {
 
   static constexpr Description description{
       .name = "bulk_fraction", .text = "Packing fraction between two heights or height quantiles"};
+  template <class Self = BulkFraction>
   static constexpr auto fields() {
     return std::tuple{
         field(
-            "name", &BulkFraction::name,
+            "name", &Self::name,
             Text{"a-z", "a-z0-9_", 64,
                  "expected lower-case letters, digits and underscores, a letter first, at most 64 "
                  "of them"}),
-        alternative(&BulkFraction::window),
-        field("taper", &BulkFraction::taper, Number{closed_range(0, 10)},
+        alternative(&Self::window),
+        field("taper", &Self::taper, Number{closed_range(0, 10)},
               "Over what height the window's edges rise and fall, diameters; 0: sharp. A layer "
               "spacing, 0.8165, takes every layer of a close-packed bed wholly or not at all",
               {.unless_default = true})};
@@ -128,8 +130,9 @@ struct KindHeight {
       .text =
           "Mean height of the centres of a kind, weighted by volume, diameters. For a kind "
           "of one sphere it is the height of an intruder. Stored as height_KIND"};
+  template <class Self = KindHeight>
   static constexpr auto fields() {
-    return std::tuple{field("kind", &KindHeight::kind, kind_name_form, "Name of the kind",
+    return std::tuple{field("kind", &Self::kind, kind_name_form, "Name of the kind",
                             {.required = "the name of a kind of spheres"})};
   }
 };
@@ -146,10 +149,11 @@ struct Segregation {
           "S = 2 (z_L - z_S)/H of two kinds, H being twice the mean height: 1 where the first "
           "fills the upper half and the second the lower",
       .symbol = "S"};
+  template <class Self = Segregation>
   static constexpr auto fields() {
-    return std::tuple{field("large", &Segregation::large, kind_name_form,
+    return std::tuple{field("large", &Self::large, kind_name_form,
                             "Kind L; absent: the one of the largest mean diameter"),
-                      field("small", &Segregation::small, kind_name_form,
+                      field("small", &Self::small, kind_name_form,
                             "Kind S; absent: the one of the smallest mean diameter")};
   }
 };
@@ -166,12 +170,13 @@ struct LaceyIndex {
           "Lacey's mixing index on cells: 0 where kinds are apart, 1 on average where spheres "
           "are labelled at random",
       .symbol = "M"};
+  template <class Self = LaceyIndex>
   static constexpr auto fields() {
     return std::tuple{
-        field("cell", &LaceyIndex::cell, Number{closed_range(0.5, 1000), "diameters"},
+        field("cell", &Self::cell, Number{closed_range(0.5, 1000), "diameters"},
               "Edge of a cell: sides of the container are divided into whole numbers of cells of "
               "about this size"),
-        field("kind", &LaceyIndex::kind, kind_name_form,
+        field("kind", &Self::kind, kind_name_form,
               "The kind that is counted; absent: the one of the largest mean diameter")};
   }
 };

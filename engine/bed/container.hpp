@@ -69,8 +69,9 @@ struct PeriodicBox {
   bool operator==(const PeriodicBox&) const = default;
 
   static constexpr Description description{.name = "periodic", .title = "Periodic sides"};
+  template <class Self = PeriodicBox>
   static constexpr auto fields() {
-    return std::tuple{widths(&PeriodicBox::width_x, &PeriodicBox::width_y, periodic_width_range)};
+    return std::tuple{widths(&Self::width_x, &Self::width_y, periodic_width_range)};
   }
 };
 
@@ -86,8 +87,9 @@ struct WalledBox {
 
   static constexpr Description description{
       .name = "walls", .text = "four vertical planes", .title = "Four walls"};
+  template <class Self = WalledBox>
   static constexpr auto fields() {
-    return std::tuple{widths(&WalledBox::width_x, &WalledBox::width_y, walled_width_range)};
+    return std::tuple{widths(&Self::width_x, &Self::width_y, walled_width_range)};
   }
 };
 
@@ -102,8 +104,9 @@ struct Cylinder {
 
   static constexpr Description description{
       .name = "cylinder", .text = "a tube", .title = "A cylinder"};
+  template <class Self = Cylinder>
   static constexpr auto fields() {
-    return std::tuple{field("diameter", &Cylinder::diameter, Number{walled_width_range},
+    return std::tuple{field("diameter", &Self::diameter, Number{walled_width_range},
                             "Diameter of a cylinder, in diameters of a sphere",
                             {.required = "a number, diameters of a sphere"})};
   }
@@ -124,11 +127,11 @@ struct FullyPeriodicBox {
       .name = "fully_periodic",
       .text = "periodic in z too and without gravity (the hard-sphere fluid)",
       .title = "A fully periodic box"};
+  template <class Self = FullyPeriodicBox>
   static constexpr auto fields() {
-    return std::tuple{
-        widths(&FullyPeriodicBox::width_x, &FullyPeriodicBox::width_y, periodic_width_range),
-        field("height", &FullyPeriodicBox::height, Number{periodic_width_range},
-              "Diameters; fully_periodic only", {.required = "a number, diameters"})};
+    return std::tuple{widths(&Self::width_x, &Self::width_y, periodic_width_range),
+                      field("height", &Self::height, Number{periodic_width_range},
+                            "Diameters; fully_periodic only", {.required = "a number, diameters"})};
   }
 };
 
@@ -144,11 +147,12 @@ struct Plates {
 
   static constexpr Description description{
       .name = "plates", .text = "periodic along x, two plates across y", .title = "Two plates"};
+  template <class Self = Plates>
   static constexpr auto fields() {
     return std::tuple{
-        field("width", &Plates::width, Number{periodic_width_range},
-              "Diameters: the period along x", {.required = "a number, diameters"}),
-        field("gap", &Plates::gap, Number{walled_width_range},
+        field("width", &Self::width, Number{periodic_width_range}, "Diameters: the period along x",
+              {.required = "a number, diameters"}),
+        field("gap", &Self::gap, Number{walled_width_range},
               "Diameters between the plates; plates only", {.required = "a number, diameters"})};
   }
 };

@@ -43,10 +43,11 @@ struct LognormalDiameter {
       "lognormal",
       "The logarithm of the diameter is normal, cut at 3 standard deviations; mean and deviation "
       "are those of the diameter without the cut"};
+  template <class Self = LognormalDiameter>
   static constexpr auto fields() {
-    return std::tuple{field("mean", &LognormalDiameter::mean, diameter_form),
-                      field("deviation", &LognormalDiameter::deviation, diameter_deviation_form,
-                            "Standard deviation")};
+    return std::tuple{
+        field("mean", &Self::mean, diameter_form),
+        field("deviation", &Self::deviation, diameter_deviation_form, "Standard deviation")};
   }
 };
 
@@ -57,10 +58,11 @@ struct NormalDiameter {
 
   static constexpr Description description{
       "normal", "Normal, cut at 3 standard deviations; mean and deviation without the cut"};
+  template <class Self = NormalDiameter>
   static constexpr auto fields() {
-    return std::tuple{field("mean", &NormalDiameter::mean, diameter_form),
-                      field("deviation", &NormalDiameter::deviation, diameter_deviation_form,
-                            "Standard deviation")};
+    return std::tuple{
+        field("mean", &Self::mean, diameter_form),
+        field("deviation", &Self::deviation, diameter_deviation_form, "Standard deviation")};
   }
 };
 
@@ -70,9 +72,10 @@ struct UniformDiameter {
   bool operator==(const UniformDiameter&) const = default;
 
   static constexpr Description description{"uniform", "Uniform between two diameters"};
+  template <class Self = UniformDiameter>
   static constexpr auto fields() {
-    return std::tuple{field("from", &UniformDiameter::smallest, diameter_form),
-                      field("to", &UniformDiameter::largest, diameter_form)};
+    return std::tuple{field("from", &Self::smallest, diameter_form),
+                      field("to", &Self::largest, diameter_form)};
   }
 };
 
@@ -83,9 +86,10 @@ struct ListedDiameters {
 
   static constexpr Description description{
       "list", "The diameter of every sphere of the kind, in their order"};
+  template <class Self = ListedDiameters>
   static constexpr auto fields() {
     return std::tuple{
-        field("", &ListedDiameters::values, list_of(diameter_form, 1, most_spheres, "diameters"))};
+        field("", &Self::values, list_of(diameter_form, 1, most_spheres, "diameters"))};
   }
 };
 

@@ -61,10 +61,11 @@ struct LinearSpringDashpot {
 
   static constexpr Description description{"linear_spring_dashpot",
                                            "Springs and dashpots (Cundall & Strack 1979)"};
+  template <class Self = LinearSpringDashpot>
   static constexpr auto fields() {
     return std::tuple_cat(
         contact_fields<LinearSpringDashpot>("Ratio of the stiffnesses; 2/7 where absent"),
-        std::tuple{field("tangential_damping", &LinearSpringDashpot::tangential_damping,
+        std::tuple{field("tangential_damping", &Self::tangential_damping,
                          Number{closed_range(0, 10)}, "Ratio of the dashpots' coefficients")});
   }
 };
@@ -79,11 +80,12 @@ struct QuietRest {
   bool operator==(const QuietRest&) const = default;
 
   static constexpr Description description{"quiet"};
+  template <class Self = QuietRest>
   static constexpr auto fields() {
     return std::tuple{
-        field("kinetic_energy", &QuietRest::kinetic_energy, Number{left_open_range(0, 1), "m g d"},
+        field("kinetic_energy", &Self::kinetic_energy, Number{left_open_range(0, 1), "m g d"},
               "Kinetic energy per sphere at rest"),
-        field("seconds", &QuietRest::seconds, Number{rest_seconds_range, "s"},
+        field("seconds", &Self::seconds, Number{rest_seconds_range, "s"},
               "How long it stays below")};
   }
 };
@@ -94,8 +96,9 @@ struct TimedRest {
   bool operator==(const TimedRest&) const = default;
 
   static constexpr Description description{"timed"};
+  template <class Self = TimedRest>
   static constexpr auto fields() {
-    return std::tuple{field("seconds", &TimedRest::seconds, Number{rest_seconds_range, "s"},
+    return std::tuple{field("seconds", &Self::seconds, Number{rest_seconds_range, "s"},
                             "Time after the floor came to rest")};
   }
 };
@@ -118,27 +121,28 @@ struct DiscreteElement {
   double most_seconds = 5;  // limit of one tap or start: then it is capped
   bool operator==(const DiscreteElement&) const = default;
 
+  template <class Self = DiscreteElement>
   static constexpr auto fields() {
     constexpr OneOf<ContactLaw> law{.by_name = true, .definition = "contact_law"};
     return std::tuple{
-        field("diameter", &DiscreteElement::diameter, Number{closed_range(1e-6, 10), "m"}),
-        field("density", &DiscreteElement::density, Number{closed_range(1, 1e5), "kg/m^3"}),
-        field("gravity", &DiscreteElement::gravity, Number{closed_range(1e-4, 1e4), "m/s^2"}),
-        field("contact", &DiscreteElement::spheres, law, "Contact law of two spheres"),
-        field("floor", &DiscreteElement::floor, law,
+        field("diameter", &Self::diameter, Number{closed_range(1e-6, 10), "m"}),
+        field("density", &Self::density, Number{closed_range(1, 1e5), "kg/m^3"}),
+        field("gravity", &Self::gravity, Number{closed_range(1e-4, 1e4), "m/s^2"}),
+        field("contact", &Self::spheres, law, "Contact law of two spheres"),
+        field("floor", &Self::floor, law,
               "Contact law of a sphere and the floor; absent: that of two spheres"),
-        field("sides", &DiscreteElement::sides, law,
+        field("sides", &Self::sides, law,
               "Contact law of a sphere and a side; absent: that of two spheres"),
-        field("steps_per_contact", &DiscreteElement::steps_per_contact, Number{contact_steps_range},
+        field("steps_per_contact", &Self::steps_per_contact, Number{contact_steps_range},
               "Time steps that the shortest contact takes. Without it 40; 160 of "
               "linear_spring_dashpot"),
         field(
-            "rest", &DiscreteElement::rest, OneOf<Rest>{.by_name = true},
+            "rest", &Self::rest, OneOf<Rest>{.by_name = true},
             "When a tap, or the start, has come to rest. quiet: the kinetic energy per sphere, in "
             "m g d, stays below a value for so many seconds. timed: so many seconds after the "
             "floor came to rest",
             {.title = "Rest"}),
-        field("most_seconds", &DiscreteElement::most_seconds, Number{rest_seconds_range},
+        field("most_seconds", &Self::most_seconds, Number{rest_seconds_range},
               "A tap, or the start, that is not at rest so many seconds after the floor is "
               "capped")};
   }

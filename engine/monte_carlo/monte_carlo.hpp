@@ -21,10 +21,11 @@ struct Relaxation {
   Sampler sampler = Sampler::exhaustive;
   bool operator==(const Relaxation&) const = default;
 
+  template <class Self = Relaxation>
   static constexpr auto fields() {
     return std::tuple{
-        alternative(&Relaxation::move), inlined(&Relaxation::stop),
-        field("sampler", &Relaxation::sampler, word(samplers),
+        alternative(&Self::move), inlined(&Self::stop),
+        field("sampler", &Self::sampler, word(samplers),
               "exhaustive: every trial is looked at. skipping: where few trials are accepted, "
               "those that are certainly refused are counted and not looked at; the law of the "
               "results is the same, the random numbers are others. Not for a finite beta, "

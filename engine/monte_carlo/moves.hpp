@@ -45,15 +45,15 @@ struct PolarMove {
       "polar",
       "A downward step, accepted where nothing overlaps (Philippe & Bideau 2001). The default",
       "Polar move"};
+  template <class Self = PolarMove>
   static constexpr auto fields() {
     return std::tuple{
-        field("max_step", &PolarMove::max_step, Number{step_length_range, "diameters"},
+        field("max_step", &Self::max_step, Number{step_length_range, "diameters"},
               "Largest length of a step", {.ladder_symbol = "d_max"}),
-        field("theta0", &PolarMove::theta0,
-              Number{closed_range(least_theta0, most_theta0), "radians"},
+        field("theta0", &Self::theta0, Number{closed_range(least_theta0, most_theta0), "radians"},
               "Width of the law of the angle from the downward vertical",
               {.ladder_symbol = "theta_0"}),
-        field("law", &PolarMove::law, word(theta_laws),
+        field("law", &Self::law, word(theta_laws),
               "Density in theta on [0, pi/2]: exp(-(theta/theta0)^2), exp(-theta/theta0) or "
               "max(0, 1 - theta/theta0)")};
   }
@@ -77,14 +77,15 @@ struct StepAdaptation {
   bool reset_each_tap = true;  // true if the step starts anew at max_step at each tap
   bool operator==(const StepAdaptation&) const = default;
 
+  template <class Self = StepAdaptation>
   static constexpr auto fields() {
-    return std::tuple{field("factor", &StepAdaptation::factor, Number{open_range(0, 1)}),
-                      field("every_trials", &StepAdaptation::every_trials, Whole{1, most_trials}),
-                      field("threshold", &StepAdaptation::threshold, Number{left_open_range(0, 1)}),
-                      field("of", &StepAdaptation::base, word(acceptance_bases),
-                            "The trials of which the share is taken"),
-                      field("reset_each_tap", &StepAdaptation::reset_each_tap, Flag{},
-                            "The step starts anew at max_step at each tap")};
+    return std::tuple{
+        field("factor", &Self::factor, Number{open_range(0, 1)}),
+        field("every_trials", &Self::every_trials, Whole{1, most_trials}),
+        field("threshold", &Self::threshold, Number{left_open_range(0, 1)}),
+        field("of", &Self::base, word(acceptance_bases), "The trials of which the share is taken"),
+        field("reset_each_tap", &Self::reset_each_tap, Flag{},
+              "The step starts anew at max_step at each tap")};
   }
 };
 
@@ -103,13 +104,14 @@ struct MetropolisMove {
 
   static constexpr Description description{
       "metropolis", "A displacement uniform in a cube (Rosato et al. 2010)", "Metropolis move"};
+  template <class Self = MetropolisMove>
   static constexpr auto fields() {
     return std::tuple{
-        field("max_step", &MetropolisMove::max_step, Number{step_length_range, "diameters"},
+        field("max_step", &Self::max_step, Number{step_length_range, "diameters"},
               "Largest displacement along an axis", {.ladder_symbol = "delta"}),
-        field("beta", &MetropolisMove::beta, or_word(Number{left_open_range(0, 1e300)}, "infinity"),
+        field("beta", &Self::beta, or_word(Number{left_open_range(0, 1e300)}, "infinity"),
               "1/temperature in units of 1/(m g d); infinity: no move goes up"),
-        field("adapt", &MetropolisMove::adaptation, or_word(Object<StepAdaptation>{}, "never"),
+        field("adapt", &Self::adaptation, or_word(Object<StepAdaptation>{}, "never"),
               "never, or: every every_trials trials the step is multiplied by factor if fewer than "
               "threshold of them were accepted",
               {.title = "Adaptation of the step"})};

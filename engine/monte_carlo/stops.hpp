@@ -28,11 +28,12 @@ struct MeanHeightStop {
       "mean_height",
       "The mean height changed by less than eta, relatively, or by less than change, in diameters, "
       "between two tests. Not both"};
+  template <class Self = MeanHeightStop>
   static constexpr auto fields() {
-    return std::tuple{field("eta", &MeanHeightStop::eta, Number{open_range(0, 1)},
-                            "Relative change of the mean height"),
-                      field("every_sweeps", &MeanHeightStop::every_sweeps, Whole{1, most_sweeps},
-                            "Sweeps between two tests")};
+    return std::tuple{
+        field("eta", &Self::eta, Number{open_range(0, 1)}, "Relative change of the mean height"),
+        field("every_sweeps", &Self::every_sweeps, Whole{1, most_sweeps},
+              "Sweeps between two tests")};
   }
 };
 
@@ -46,11 +47,12 @@ struct HeightChangeStop {
 
   static constexpr Description description{
       "mean_height"};  // a key distinguishes it from MeanHeightStop
+  template <class Self = HeightChangeStop>
   static constexpr auto fields() {
-    return std::tuple{field("change", &HeightChangeStop::change, Number{left_open_range(0, 1)},
+    return std::tuple{field("change", &Self::change, Number{left_open_range(0, 1)},
                             "Absolute change, diameters: the same for beds of every depth",
                             {.required = "the change of the mean height"}),
-                      field("every_sweeps", &HeightChangeStop::every_sweeps, Whole{1, most_sweeps},
+                      field("every_sweeps", &Self::every_sweeps, Whole{1, most_sweeps},
                             "Sweeps between two tests")};
   }
 };
@@ -70,15 +72,15 @@ struct BulkFractionStop {
       "bulk_fraction",
       "The packing fraction of a window changed by at most change, several times in a row (Rosato "
       "et al. 2010). Can stop a bed in mid-air"};
+  template <class Self = BulkFractionStop>
   static constexpr auto fields() {
-    return std::tuple{
-        field("change", &BulkFractionStop::change, Number{closed_range(0, 1)}),
-        field("every_trials", &BulkFractionStop::every_trials, Whole{1, most_trials},
-              "Trials between two measurements"),
-        field("times", &BulkFractionStop::times, Whole{1, 1000}),
-        field("measure_start", &BulkFractionStop::measure_start, Flag{},
-              "The state right after the tap counts as a measurement"),
-        field("window", &BulkFractionStop::window, OneOf<Window>{}, "", {.title = "Window"})};
+    return std::tuple{field("change", &Self::change, Number{closed_range(0, 1)}),
+                      field("every_trials", &Self::every_trials, Whole{1, most_trials},
+                            "Trials between two measurements"),
+                      field("times", &Self::times, Whole{1, 1000}),
+                      field("measure_start", &Self::measure_start, Flag{},
+                            "The state right after the tap counts as a measurement"),
+                      field("window", &Self::window, OneOf<Window>{}, "", {.title = "Window"})};
   }
 };
 
@@ -88,8 +90,9 @@ struct SweepsStop {
   bool operator==(const SweepsStop&) const = default;
 
   static constexpr Description description{"sweeps", "A fixed number of sweeps"};
+  template <class Self = SweepsStop>
   static constexpr auto fields() {
-    return std::tuple{field("", &SweepsStop::sweeps, Whole{1, most_sweeps})};
+    return std::tuple{field("", &Self::sweeps, Whole{1, most_sweeps})};
   }
 };
 
@@ -101,11 +104,12 @@ struct Stop {
   std::uint64_t max_sweeps = 1'000'000;
   bool operator==(const Stop&) const = default;
 
+  template <class Self = Stop>
   static constexpr auto fields() {
     return std::tuple{
-        field("stop", &Stop::rule, OneOf<StopRule>{}, "When a relaxation ends",
+        field("stop", &Self::rule, OneOf<StopRule>{}, "When a relaxation ends",
               {.title = "Stop rule"}),
-        field("max_sweeps", &Stop::max_sweeps, Whole{1, most_sweeps},
+        field("max_sweeps", &Self::max_sweeps, Whole{1, most_sweeps},
               "Ends a relaxation that never meets its rule; such relaxations are counted and "
               "reported",
               {.title = "Cap"})};

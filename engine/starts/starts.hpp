@@ -123,12 +123,12 @@ struct RandomSettle {
   static constexpr Description description{
       "random_settle", "Random positions in a tall dilute box, then a relaxation without a tap",
       "Random settle"};
+  template <class Self = RandomSettle>
   static constexpr auto fields() {
     return std::tuple{
-        field("dilute_fraction", &RandomSettle::dilute_fraction,
+        field("dilute_fraction", &Self::dilute_fraction,
               Number{left_open_range(0, densest_dilution)}, "Packing fraction of the dilute box"),
-        field("drop_height", &RandomSettle::drop_height,
-              Number{closed_range(0, highest_drop), "diameters"},
+        field("drop_height", &Self::drop_height, Number{closed_range(0, highest_drop), "diameters"},
               "Height of the dilute box's foot above the floor", {.unless_default = true})};
   }
 };
@@ -159,11 +159,12 @@ struct Crystal {
       "A close-packed crystal, filled layer by layer from the floor; between walls and in a "
       "cylinder without the sites that do not fit",
       "Crystal"};
+  template <class Self = Crystal>
   static constexpr auto fields() {
-    return std::tuple{field("lattice", &Crystal::lattice, word(lattices),
+    return std::tuple{field("lattice", &Self::lattice, word(lattices),
                             "hcp: layers parallel to the floor. fcc: on its (100) face",
                             {.required = "one of the strings hcp, fcc"}),
-                      field("stretch", &Crystal::stretch, Flag{},
+                      field("stretch", &Self::stretch, Flag{},
                             "Stretch the lattice where a periodic footprint is not commensurate")};
   }
 };
@@ -187,8 +188,9 @@ struct Grow {
 
   static constexpr Description description{
       "grow", "Random points that grow to spheres; fully_periodic containers only", "Grow"};
+  template <class Self = Grow>
   static constexpr auto fields() {
-    return std::tuple{field("max_sweeps", &Grow::max_sweeps, Whole{1, most_growth_sweeps})};
+    return std::tuple{field("max_sweeps", &Self::max_sweeps, Whole{1, most_growth_sweeps})};
   }
 };
 

@@ -43,6 +43,7 @@ struct SteadySettings {
 
   static constexpr Description description{
       "steady", "Value, fluctuation and memory of the last taps, and whether they are steady"};
+  template <class Self = SteadySettings>
   static constexpr auto fields() {
     return std::tuple{last_taps<SteadySettings>(SteadyStateTest::fewest_taps,
                                                 "Taps at the end; absent: a quarter of all")};
@@ -65,15 +66,16 @@ struct SpectrumSettings {
 
   static constexpr Description description{"spectrum",
                                            "Power spectrum of the last taps and its log-log slope"};
+  template <class Self = SpectrumSettings>
   static constexpr auto fields() {
     return std::tuple{
         last_taps<SpectrumSettings>(fewest_spectrum_taps, "Taps at the end; absent: half of all"),
-        field("segment", &SpectrumSettings::segment, Whole{shortest_spectrum_segment, most_taps},
+        field("segment", &Self::segment, Whole{shortest_spectrum_segment, most_taps},
               "Taps of a segment of Welch's average; absent: about a quarter of them"),
-        field("window", &SpectrumSettings::window, word(taper_names)),
-        field("detrend", &SpectrumSettings::detrending, word(detrending_names),
+        field("window", &Self::window, word(taper_names)),
+        field("detrend", &Self::detrending, word(detrending_names),
               "Function that is subtracted from every segment"),
-        field("band", &SpectrumSettings::band, Band::form,
+        field("band", &Self::band, Band::form,
               "Lowest and highest frequency of the slope, in 1/taps; absent: all that are sound",
               {.examples = "[[0.001, 0.1]]"})};
   }
@@ -86,11 +88,12 @@ struct AgeingSettings {
 
   static constexpr Description description{
       "ageing", "A(t, t_W), V and C with errors, fits of eq. 6, what lays ages on one curve"};
+  template <class Self = AgeingSettings>
   static constexpr auto fields() {
-    return std::tuple{field("waiting_times", &AgeingSettings::waiting_times, TapNumbers{},
-                            "Ages t_W; none: 0 and two a decade, up to a tenth of the taps"),
-                      field("lags", &AgeingSettings::lags, TapNumbers{},
-                            "t, each at least 1; none: ten a decade")};
+    return std::tuple{
+        field("waiting_times", &Self::waiting_times, TapNumbers{},
+              "Ages t_W; none: 0 and two a decade, up to a tenth of the taps"),
+        field("lags", &Self::lags, TapNumbers{}, "t, each at least 1; none: ten a decade")};
   }
 };
 
@@ -101,6 +104,7 @@ struct HysteresisSettings {
 
   static constexpr Description description{
       "hysteresis", "Steady value of every stage of the protocol, branches, areas of loops"};
+  template <class Self = HysteresisSettings>
   static constexpr auto fields() {
     return std::tuple{last_taps<HysteresisSettings>(
         1, "Taps at the end of each stage; absent: a quarter of the shortest")};
@@ -120,14 +124,15 @@ struct OrderingSettings {
       "ordering",
       "Time to order, its distribution over realizations, growth; over a "
       "sweep which point orders first, and which ends highest"};
+  template <class Self = OrderingSettings>
   static constexpr auto fields() {
     return std::tuple{
-        field("threshold", &OrderingSettings::threshold, Number{closed_range(-1e9, 1e9)},
+        field("threshold", &Self::threshold, Number{closed_range(-1e9, 1e9)},
               "The value from which a packing counts as ordered, in units of the observable",
               {.required = "the value of the observable at which a packing counts as ordered"}),
-        field("hold", &OrderingSettings::hold, Whole{1, most_taps},
+        field("hold", &Self::hold, Whole{1, most_taps},
               "Taps running that it must be at or above the threshold"),
-        field("equilibrium", &OrderingSettings::equilibrium, Text{},
+        field("equilibrium", &Self::equilibrium, Text{},
               "The observable whose last taps are compared over a sweep; absent: the same",
               {.unless_default = true}),
         last_taps<OrderingSettings>(1, "Taps at the end that are compared; absent: a quarter")};
@@ -150,15 +155,16 @@ struct SweepSettings {
       "sweep",
       "A quantity against the swept value, its extrema, its straight "
       "line, differences between its points"};
+  template <class Self = SweepSettings>
   static constexpr auto fields() {
     return std::tuple{
-        field("quantity", &SweepSettings::quantity, Text{},
+        field("quantity", &Self::quantity, Text{},
               "value: the mean of the last taps; or what another analysis or a fit that the scene "
               "asks for finds",
               {.examples = R"(["value", "steady/sigma", "kww/rho_inf"])"}),
         last_taps<SweepSettings>(1, "Taps at the end; absent: a quarter of all"),
         drawn_against<SweepSettings>(),
-        field("reference", &SweepSettings::reference, Number{closed_range(-1e9, 1e9)},
+        field("reference", &Self::reference, Number{closed_range(-1e9, 1e9)},
               "Point on the axis as drawn that all others are compared with; absent: neighbours")};
   }
 };
@@ -173,12 +179,13 @@ struct VolumesSettings {
 
   static constexpr Description description{
       "volumes", "Variance of steady states over strengths, compactivity by two estimators"};
+  template <class Self = VolumesSettings>
   static constexpr auto fields() {
     return std::tuple{last_taps<VolumesSettings>(
                           SteadyStateTest::fewest_taps,
                           "Taps at the end; absent: a quarter of all, or of the shortest stage"),
                       drawn_against<VolumesSettings>(),
-                      field("spheres", &VolumesSettings::spheres, Number{left_open_range(0, 1e9)},
+                      field("spheres", &Self::spheres, Number{left_open_range(0, 1e9)},
                             "Whose volume it is; absent: those of the observable's window")};
   }
 };
@@ -192,9 +199,10 @@ struct MemorySettings {
       "memory",
       "A test of whether the evolution after a common value depends on how it was reached: "
       "the last stage is common to the sweep points"};
+  template <class Self = MemorySettings>
   static constexpr auto fields() {
     return std::tuple{
-        field("lags", &MemorySettings::lags, TapNumbers{},
+        field("lags", &Self::lags, TapNumbers{},
               "Last ones of windows after the switch, each at least 1; none: 1, 3, 10, 30, ...")};
   }
 };

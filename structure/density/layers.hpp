@@ -27,13 +27,14 @@ struct LayerRule {
   double least_filling = 0.7;
   bool operator==(const LayerRule&) const = default;
 
+  template <class Self = LayerRule>
   static constexpr auto fields() {
     return std::tuple{
-        field("tolerance", &LayerRule::tolerance, Number{left_open_range(0, 0.4), "diameters"},
+        field("tolerance", &Self::tolerance, Number{left_open_range(0, 0.4), "diameters"},
               "Distance of a centre from its layer's height"),
-        field("least_share", &LayerRule::least_share, Number{closed_range(0, 1)},
+        field("least_share", &Self::least_share, Number{closed_range(0, 1)},
               "Share of a layer's centres within the tolerance"),
-        field("least_filling", &LayerRule::least_filling, Number{closed_range(0, 1)},
+        field("least_filling", &Self::least_filling, Number{closed_range(0, 1)},
               "Filling of a full layer")};
   }
 };

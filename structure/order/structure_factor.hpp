@@ -19,17 +19,16 @@ struct StructureFactorSettings {
 
   static constexpr Description description{
       "structure_factor", "S(k) of wave vectors that fit the periodic sides, and S at k = 0"};
+  template <class Self = StructureFactorSettings>
   static constexpr auto fields() {
     return std::tuple{
-        field("k_max", &StructureFactorSettings::k_max, Number{closed_range(0.5, 50), "1/diameter"},
+        field("k_max", &Self::k_max, Number{closed_range(0.5, 50), "1/diameter"},
               "Largest wave number"),
-        field("bin_width", &StructureFactorSettings::bin_width,
-              Number{closed_range(0.01, 10), "1/diameter"}, "Width of bins of wave numbers"),
-        field("fit_to", &StructureFactorSettings::fit_to,
-              Number{closed_range(0.1, 50), "1/diameter"},
+        field("bin_width", &Self::bin_width, Number{closed_range(0.01, 10), "1/diameter"},
+              "Width of bins of wave numbers"),
+        field("fit_to", &Self::fit_to, Number{closed_range(0.1, 50), "1/diameter"},
               "Up to which k straight lines are drawn to k = 0"),
-        field("modes", &StructureFactorSettings::modes, Whole{1, 1'000'000},
-              "Wave vectors of a bin, at most")};
+        field("modes", &Self::modes, Whole{1, 1'000'000}, "Wave vectors of a bin, at most")};
   }
 };
 

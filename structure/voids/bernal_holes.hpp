@@ -53,13 +53,14 @@ struct BondLengths {
   double first = 1.2, last = 1.4, step = 0.05;
   bool operator==(const BondLengths&) const = default;
 
+  template <class Self = BondLengths>
   static constexpr auto fields() {
-    return std::tuple{field("first", &BondLengths::first,
-                            Number{left_open_range(1, 2), "diameters"}, "First bond length"),
-                      field("last", &BondLengths::last, Number{left_open_range(1, 2), "diameters"},
-                            "Last bond length"),
-                      field("step", &BondLengths::step, Number{closed_range(0.001, 1), "diameters"},
-                            "Between bond lengths")};
+    return std::tuple{
+        field("first", &Self::first, Number{left_open_range(1, 2), "diameters"},
+              "First bond length"),
+        field("last", &Self::last, Number{left_open_range(1, 2), "diameters"}, "Last bond length"),
+        field("step", &Self::step, Number{closed_range(0.001, 1), "diameters"},
+              "Between bond lengths")};
   }
 };
 
