@@ -94,12 +94,12 @@ void add_from_walls(const Packing& packing, HeightWindow window, const SidesSett
   const LateralCentral fractions = lateral_and_central(packing, window, settings.reach);
   measurement.quantities.push_back({.name = "lateral",
                                     .values = {fractions.lateral},
-                                    .long_name = "packing fraction within the reach of a wall",
+                                    .long_name = "packing fraction of the profile near its walls",
                                     .source = "Philippe & Bideau 2001, fig. 8",
                                     .with_change = true});
   measurement.quantities.push_back({.name = "central",
                                     .values = {fractions.central},
-                                    .long_name = "packing fraction beyond the reach of walls",
+                                    .long_name = "packing fraction of the profile between",
                                     .source = "Philippe & Bideau 2001, fig. 8",
                                     .with_change = true});
 }

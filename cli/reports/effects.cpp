@@ -47,6 +47,7 @@ std::string in_words(const Json& value, Units units = Units::none) {
     return words;
   }
   for (const auto& [key, member] : value.members()) {
+    if (member.is_array() && member.empty()) continue;  // a default that depends on the run
     if (!words.empty()) words += ", ";
     if (!member.is_object()) {
       const bool has_unit = units == Units::discrete_elements && member.is_number();

@@ -29,6 +29,15 @@ void write_box(hid_t group, const Container& container, double highest) {
   attach_axes(dataset, axes);
 }
 
+double highest_point(const std::vector<Vec3>& centres, std::span<const double> diameters) {
+  double highest = 0;
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    const double radius = diameters.empty() ? sphere_radius : diameters[i] / 2;
+    highest = std::max(highest, centres[i].z + radius);
+  }
+  return highest;
+}
+
 /// An element of H5MD, [n_steps, n_spheres, 3], whose frames come one by one.
 template <class VectorsAt>
 void write_element(hid_t group, const SphereVector& vector, std::uint32_t n_spheres,
@@ -61,7 +70,8 @@ void write_boundary(const Hdf5Handle& box, const Container& container) {
 }
 
 void write_particles(hid_t file, const std::string& name, const Container& container,
-                     std::uint32_t n_spheres, const std::vector<SnapshotOutline>& snapshots,
+                     std::uint32_t n_spheres, std::span<const double> diameters,
+                     const std::vector<SnapshotOutline>& snapshots,
                      StoredRealization& realization) {
   std::vector<ContactFrame> frames;
   for (const SnapshotOutline& outline : snapshots)
@@ -76,8 +86,7 @@ void write_particles(hid_t file, const std::string& name, const Container& conta
     const auto vectors_at = [&](std::uint64_t tap) {
       std::vector<Vec3> vectors = realization.vectors(tap, k);
       if (vectors.size() != n_spheres) throw Hdf5Error(name + ": a snapshot of other spheres");
-      if (k == kept_positions)
-        for (const Vec3& centre : vectors) highest = std::max(highest, centre.z + sphere_radius);
+      if (k == kept_positions) highest = std::max(highest, highest_point(vectors, diameters));
       return vectors;
     };
     if (!taps.empty()) write_element(group, sphere_vectors[k], n_spheres, taps, vectors_at);

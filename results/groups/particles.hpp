@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,11 @@ void write_boundary(const Hdf5Handle& box, const Container& container);
 
 /// Writes one group of H5MD's /particles, of the snapshots that keep positions: box, and for each
 /// of sphere_vectors that was kept an element {step, value} with a frame a snapshot; and the
-/// contacts. Without such snapshots it writes nothing.
+/// contacts. Without such snapshots it writes nothing. `diameters`: [n_spheres], or empty where all
+/// are 1.
 void write_particles(hid_t file, const std::string& name, const Container& container,
-                     std::uint32_t n_spheres, const std::vector<SnapshotOutline>& snapshots,
-                     StoredRealization& realization);
+                     std::uint32_t n_spheres, std::span<const double> diameters,
+                     const std::vector<SnapshotOutline>& snapshots, StoredRealization& realization);
 
 /// Such a group, read frame by frame. Throws Hdf5Error, also where it holds another number of
 /// spheres.

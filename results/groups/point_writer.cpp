@@ -73,7 +73,7 @@ RealizationStatus PointWriter::add(std::unique_ptr<StoredRealization> realizatio
   reasons_.push_back(head.reason);
   work_.push_back(head.work);
   fittings_.push_back(head.state ? head.state->fitting : std::nullopt);
-  take_snapshots(*realization);
+  take_snapshots(*realization, head.state ? diameters_of(*head.state) : std::vector<double>{});
   if (point_.motion && head.state && head.state->motion) {
     if (!motion_) motion_.emplace(*point_.motion, point_.n_spheres, n_realizations_);
     motion_->add(static_cast<std::uint32_t>(realizations_.size()), *head.state->motion,
@@ -88,7 +88,14 @@ RealizationStatus PointWriter::add(std::unique_ptr<StoredRealization> realizatio
   return head.status;
 }
 
-void PointWriter::take_snapshots(StoredRealization& realization) {
+/// [n_spheres]; empty where all are 1.
+std::vector<double> PointWriter::diameters_of(const RealizationState& state) const {
+  if (!point_.mixture) return {};
+  return point_.mixture->drawn() ? state.diameters : point_.mixture->diameters;
+}
+
+void PointWriter::take_snapshots(StoredRealization& realization,
+                                 const std::vector<double>& diameters) {
   const auto number = static_cast<std::uint32_t>(realizations_.size());
   const auto& taps = point_.snapshots.taps;
   std::vector<SnapshotOutline> snapshots = realization.snapshots();
@@ -102,7 +109,7 @@ void PointWriter::take_snapshots(StoredRealization& realization) {
     if (point_.snapshots.forces) statistics_.forces[cell] = snapshot.forces;
   }
   write_particles(file_, particles_name({number_, number}), point_.container, point_.n_spheres,
-                  snapshots, realization);
+                  diameters, snapshots, realization);
 }
 
 void PointWriter::write_restart(const RealizationState& state) {

@@ -33,7 +33,8 @@ class PointWriter {
 
  private:
   void begin();
-  void take_snapshots(StoredRealization& realization);
+  std::vector<double> diameters_of(const RealizationState& state) const;
+  void take_snapshots(StoredRealization& realization, const std::vector<double>& diameters);
   void write_restart(const RealizationState& state);
   void write_observables();
   void write_series(hid_t group, const Hdf5Handle& taps, const Hdf5Handle& realizations);

@@ -73,11 +73,12 @@ std::vector<std::string> grain_summary(const Plan& plan) {
         deepest * speed * std::sqrt(times.mass / (2 * stiffness)) / engine->diameter;
     const std::string line = finite_text(
         "a = {:.4g} d, f = {:.4g} Hz: Gamma {:.3f}, floor speed {:.3g} m/s, overlap {:.2g} "
-        "d where two spheres meet at it and up to some {:.2g} d in beds, "
+        "{} where two {}spheres meet at it and up to some {:.2g} in beds, "
         "{:.0f} steps while the floor moves{}",
-        floor->amplitude, floor->frequency, gamma, speed, overlap, in_beds * overlap,
+        floor->amplitude, floor->frequency, gamma, speed, overlap,
+        sizes ? "of their diameter" : "d", sizes ? "like " : "", in_beds * overlap,
         floor->seconds / times.step_seconds,
-        in_beds * overlap < 0.2 ? "" : "; beds fail at 0.2 d: raise the stiffness");
+        in_beds * overlap < 0.2 ? "" : "; beds fail at 0.2: raise the stiffness");
     if (known.insert(line).second && known.size() <= 5) lines.push_back(line);
   }
   if (known.size() > 5) lines.push_back(fmt::format("... and {} more taps", known.size() - 5));

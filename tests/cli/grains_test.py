@@ -279,7 +279,7 @@ class Grains(Case):
                                                "rest": {"timed": {"seconds": 9}}}}
         self.write(changed(hard, snapshots={}))
         text = self.jostle("check", "scene.json", "--no-pilot", environment=UNFOLDED).stdout
-        self.assertIn("beds fail at 0.2 d: raise the stiffness", text)
+        self.assertIn("beds fail at 0.2: raise the stiffness", text)
         self.assertIn("is capped after 5 s: every tap will be", text)
         self.assertIn("the pilot failed: a sphere left the container, or overlaps another by more",
                       self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)

@@ -175,8 +175,10 @@ class Mixtures(Case):
             self.assertEqual(diameters.shape, (3, 73))
             self.assertEqual(len(np.unique(diameters[:, :60])), 180)
             self.assertTrue((diameters[:, 60:72] == 1.5).all() and (diameters[:, 72] == 2.5).all())
-            start = file["particles/point_0000_realization_00002/position/value"][0]
-            np.testing.assert_allclose(start[72], [3, 3, 1.25], atol=1e-12)
+            particles = file["particles/point_0000_realization_00002"]
+            positions = particles["position/value"][()]
+            np.testing.assert_allclose(positions[0, 72], [3, 3, 1.25], atol=1e-12)
+            self.assertEqual(particles["box/edges"][2], (positions[:, :, 2] + diameters[2] / 2).max())
 
     def test_heights_of_kinds_are_those_of_the_kept_packings(self):
         self.run_scene("-o", "a.h5")
@@ -186,7 +188,9 @@ class Mixtures(Case):
             self.assertEqual(spheres["name"].asstr()[()].tolist(), [kind["name"] for kind in KINDS])
             self.assertEqual(spheres["density"][()].tolist(), [1, 1, 2])
             kind, volume = spheres["kind"][()], spheres["diameter"][()] ** 3
-            positions = file["particles/point_0000_realization_00001/position/value"][()]
+            particles = file["particles/point_0000_realization_00001"]
+            positions = particles["position/value"][()]
+            self.assertEqual(particles["box/edges"][2], (positions[:, :, 2] + spheres["diameter"][()] / 2).max())
             series = file["observables/point_0000"]
             for frame, tap in enumerate((0, 3, 6)):
                 z = positions[frame][:, 2]

@@ -128,6 +128,11 @@ Ages of_ages(const LogCurves& all, const std::vector<std::uint64_t>& waiting_tim
   return found;
 }
 
+// Requires a curve.
+std::string first_of(const Ages& ages) {
+  return fmt::format("t_W = {:.0f}", ages.t_w[0]);
+}
+
 /// The least squares of ln A = F(ln t - mu ln t_W), or of that plus a scale that ages.
 class PowerOfAge {
  public:
@@ -231,8 +236,8 @@ AgeingExponent ageing_exponent(const LogCurves& all,
   // Without a scale, mu compensates much of an existing one, and a test about the best mu has
   // little power. Fitted together the two are so alike, where A is nearly a power, that errors are
   // too small. A scale is accepted if both find it, and excluded if neither does.
-  const TestedChange change{name + " at equal t/t_W^mu", "collapse refuted",
-                            "collapse not refuted"};
+  const TestedChange change{name + " at equal t/t_W^mu", "collapse refuted", "collapse not refuted",
+                            first_of(ages)};
   const AgeTrend about_mu = scale_that_ages(ages, power, change);
   const AgeTrend beside_mu = scale_that_ages(ages, PowerOfAge(ages, places_of(curves)), change);
   const AgeTrend collapse =
@@ -267,9 +272,9 @@ AgeTrend logarithmic_collapse(const LogCurves& all, const std::vector<std::uint6
                           Eigen::MatrixXd(t_w.size(), 0));
   const auto weights = weights_beyond(-curve.slope.cwiseProduct(places_of(curves)), curve.basis);
   if (!weights) return cannot_decide("the curves do not overlap");
-  return tested_change(
-      curves, *weights, curve.residuals,
-      {"ln(1 + t/t_W)/ln t_W at equal " + name, "collapse refuted", "collapse not refuted"});
+  return tested_change(curves, *weights, curve.residuals,
+                       {"ln(1 + t/t_W)/ln t_W at equal " + name, "collapse refuted",
+                        "collapse not refuted", first_of(ages)});
 }
 
 TimeScaling cannot_scale(const std::string& reason) {

@@ -33,18 +33,15 @@ AgeTrend trend(const LogCurves& curves, const Eigen::VectorXd& weights,
 }
 
 // "p = 0.3; a factor of 4 would be found with power 0.8".
-std::string power_of(const AgeTrend& found, const std::string& symbol) {
-  if (std::isnan(found.p))
-    return fmt::format(
-        "change of {} from the first waiting time to the last: no test, its error "
-        "is not known",
-        symbol);
+std::string power_of(const AgeTrend& found, const TestedChange& words) {
+  const std::string change =
+      fmt::format("change of {} from {} to the last", words.quantity, words.first);
+  if (std::isnan(found.p)) return change + ": no test, its error is not known";
   const std::string power =
       std::isnan(found.detectable)
           ? "but its error is beyond all factors: none would be found"
           : finite_text("a factor of {:.3g} would be found with power 0.8", found.detectable);
-  return finite_text("change of {} from the first waiting time to the last: {}, {}", symbol,
-                     p_text(found.p), power);
+  return change + ": " + p_text(found.p) + ", " + power;
 }
 
 // An error beyond all factors leaves a small p without a meaning.
@@ -54,7 +51,7 @@ bool finds(const AgeTrend& found) {
 
 std::string verdict(const AgeTrend& found, bool is_excluded, std::size_t realizations,
                     const TestedChange& words) {
-  const std::string power = power_of(found, words.quantity);
+  const std::string power = power_of(found, words);
   if (finds(found)) return fmt::format("{} ({})", words.changes, power);
   if (is_excluded) return fmt::format("{} ({})", words.does_not, power);
   return fmt::format("cannot decide with {} realizations ({})", realizations, power);

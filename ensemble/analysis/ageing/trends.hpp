@@ -20,9 +20,10 @@ AgeTrend cannot_decide(const std::string& reason);
 
 /// The words of a test.
 struct TestedChange {
-  std::string quantity;  // "A": what may change
-  std::string changes;   // the verdict where it does: "A changes with age"
-  std::string does_not;  // and where a factor of ten would have been found
+  std::string quantity;                          // "A": what may change
+  std::string changes;                           // the verdict where it does: "A changes with age"
+  std::string does_not;                          // and where a factor of ten would have been found
+  std::string first = "the first waiting time";  // from which it is estimated
 };
 /// The logarithm of the factor is the sum of weights times `values` over that of the weights'
 /// squares, both [n_points].

@@ -51,6 +51,12 @@ TEST_CASE("A value that the sweep replaces is swept, at any place") {
                        !Contains("0.02") && !Contains("lift 1"));
 }
 
+TEST_CASE("A list that is left to a default is not printed") {
+  const std::string text = effects_text(Json::parse(
+      R"({"until": {"targets": [{"observable": "mean_height", "taps": [], "sigma": 0.05}]}})"));
+  CHECK_THAT(text, Contains("targets observable mean_height, sigma 0.05\n"));
+}
+
 TEST_CASE("A long list is named by its first values, its last and their number") {
   std::string values = "1";
   for (int i = 2; i <= 100; ++i) values += ", " + std::to_string(i);

@@ -31,8 +31,17 @@ TEST_CASE("The summary of grains agrees with a calculation by hand") {
   // 0.416 m/s * sqrt(5.0265e-3 / 2e5) / 0.02 m.
   CHECK_THAT(
       lines[1],
-      Contains("overlap 0.0033 d where two spheres meet at it and up to some 0.013 d in beds") &&
+      Contains("overlap 0.0033 d where two spheres meet at it and up to some 0.013 in beds") &&
           !Contains("stiffness"));
+}
+
+// Two spheres of 4 d have 64 times the mass: sqrt(64) / 4 = 2 times the overlap over their diameter.
+TEST_CASE("Overlaps in a mixture are judged by the diameters of the spheres that meet") {
+  Plan plan = grains({{HalfSine{0.4413, 7.5}, 10}});
+  plan.container = PeriodicBox{10, 10};
+  plan.kinds = {{"small", 18, FixedDiameter{1}}, {"large", 2, FixedDiameter{4}}};
+  const auto lines = grain_summary(plan);
+  CHECK_THAT(lines.at(1), Contains("overlap 0.0066 of their diameter where two like spheres meet"));
 }
 
 TEST_CASE("An acceleration is the amplitude that it asks for") {
@@ -51,7 +60,7 @@ TEST_CASE("Equal taps are listed once, too many are counted, too fast ones warne
   REQUIRE(lines.size() == 7);
   CHECK(lines.back() == "... and 4 more taps");
   const auto fast = grain_summary(grains({{Vibration{0.48, 1000, 4}, 1}}));
-  CHECK_THAT(fast.at(1), Contains("beds fail at 0.2 d: raise the stiffness"));
+  CHECK_THAT(fast.at(1), Contains("beds fail at 0.2: raise the stiffness"));
   Plan monte_carlo = grains({{Dilate{0.1}, 5}});
   monte_carlo.engine = MonteCarlo{};
   CHECK(grain_summary(monte_carlo).empty());
