@@ -7,7 +7,7 @@ import functools
 import re
 
 import numpy as np
-from scipy import stats
+from scipy import optimize, stats
 
 from reduce import REDUCED, read_table
 
@@ -142,12 +142,43 @@ def rise_of(run, swept):
               f" | {tested} | {(gained[:, -1] > RISEN).sum()} of {len(gained)} |")
 
 
-RISES = {"mixtures-rise-long": ["diameter"], "mixtures-rise-density": ["density"],
-         "mixtures-rise-grains": ["friction", "diameter"], "mixtures-rise-grains-density": ["density"]}
+def detectable(values, power=0.8):
+    """The smallest mean that a t-test at 5 % finds with this power at the scatter of the values."""
+    dof = len(values) - 1
+    critical = stats.t.ppf(0.975, dof)
+
+    def excess(shift):
+        return stats.nct.sf(critical, dof, shift) + stats.nct.cdf(-critical, dof, shift) - power
+
+    return optimize.brentq(excess, 0.5, 20) * np.std(values, ddof=1) / np.sqrt(len(values))
+
+
+def rise_by_density(run):
+    """A table of rises and, in pairs, their differences from that of an intruder of density 1."""
+    rise_of(run, ["density"])
+    found, taps, labels = series_of(run)
+    gained = {number(labels[point], "density"): columns["height_intruder"] - columns["height_intruder"][:, :1]
+              for point, columns in found.items()}
+    for density, rises in sorted(gained.items()):
+        mean, _, _ = mean_of(rises[:, -1])
+        margin = stats.t.ppf(0.95, len(rises) - 1) * rises[:, -1].std(ddof=1) / np.sqrt(len(rises))
+        print(f"density {density:g}: at most {rises[:, -1].max():.2f}, upper 95 % limit of the mean {mean + margin:.2f}")
+    rows = [(tap, density, (rises - gained[1])[:, taps.index(tap)])
+            for tap in (10, taps[-1]) for density, rises in sorted(gained.items()) if density != 1]
+    ps = holm([mean_of(differences)[2] for *_, differences in rows])
+    for (tap, density, differences), p in zip(rows, ps):
+        print(f"tap {tap}: density {density:g} less 1, in pairs: {text_of(differences, 3)}, p = "
+              f"{mean_of(differences)[2]:.2g}, by Holm's rule {p:.2g}, found with a power of 80 %: "
+              f"{detectable(differences):.2g}")
+
+
+RISES = {"mixtures-rise-long": ["diameter"], "mixtures-rise-grains": ["friction", "diameter"]}
+DENSITIES = ["mixtures-rise-density", "mixtures-rise-grains-density"]
 
 
 if __name__ == "__main__":
     tables = {"mixtures-rise": rise, **{run: functools.partial(rise_of, run, swept) for run, swept in RISES.items()},
+              **{run: functools.partial(rise_by_density, run) for run in DENSITIES},
               "mixtures-composition": composition, "mixtures-polydisperse": polydisperse}
     for name, table in tables.items():
         print(f"\n## {name}\n")
