@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
@@ -23,6 +24,7 @@ struct Mixture {
   const char* name;
   std::vector<MixtureKind> kinds;  // empty: equal spheres, by the loop that is made for them
   double target = 0;               // least ratio of rates; 0: reported without a target
+  double width = 16;               // width of the periodic box, diameters
 };
 
 MixtureKind kind(const char* name, std::uint32_t count, DiameterLaw diameter) {
@@ -39,6 +41,9 @@ std::vector<Mixture> mixtures() {
       {"1 and 1.4, half each", {kind("s", half, small), kind("l", half, FixedDiameter{1.4})}, 0.8},
       {"one intruder of 5", {kind("s", n_spheres - 1, small), kind("l", 1, FixedDiameter{5})}, 0.7},
       {"eight of 7", {kind("s", n_spheres - 8, small), kind("l", 8, FixedDiameter{7})}},
+      // In a box so narrow that the bed is as deep as that of 1 and 1.4: a tap dilates a bed by a
+      // share of its depth, and the deeper bed accepts more of the trials after it.
+      {"equal, as deep as 1.4", {}, 0, 16 / std::sqrt(0.5 * (1 + 1.4 * 1.4 * 1.4))},
   };
 }
 
@@ -57,7 +62,8 @@ Packing bed_of(const Mixture& mixture) {
   RandomStream diameters(stream_key(seed, 0, 0, Purpose::sizes));
   if (!mixture.kinds.empty()) spheres.sizes = draw_sizes(mixture.kinds, diameters);
   RandomStream places(stream_key(seed, 0, 0, Purpose::start));
-  Packing bed = make_start(RandomSettle{0.2}, PeriodicBox{16, 16}, spheres, places);
+  const PeriodicBox box{mixture.width, mixture.width};
+  Packing bed = make_start(RandomSettle{0.2}, box, spheres, places);
   RandomStream taps(stream_key(seed, 0, 0, Purpose::tap));
   for (std::uint64_t tap = 0; tap < 2; ++tap) {
     if (tap > 0) excite(bed, Dilate{0.02}, taps);
@@ -79,18 +85,18 @@ struct Side {
   Packing bed;  // at rest
   std::unique_ptr<TrialLoop> loop, skipping;
   std::vector<double> rates, tapped_rates, skipping_rates, step_seconds;  // [turn]
-  Rate last;
+  Rate last, last_tapped;
 };
 
-// Exhaustive trials per second of a whole relaxation: a tap and the sweeps after it.
-double tapped_rate(const Side& side, std::uint64_t turn) {
+// Exhaustive trials of a whole relaxation: a tap and the sweeps after it.
+Rate tapped_rate(const Side& side, std::uint64_t turn) {
   constexpr std::uint64_t sweeps = 2000;
   Packing bed = side.bed;
   RandomStream taps(stream_key(seed, 1, turn, Purpose::tap));
   excite(bed, Dilate{0.02}, taps);
   const auto loop = loop_for(bed, 10 + turn);
   loop->begin_tap();
-  return measure_rate(*loop, sweeps * n_spheres).trials_per_second();
+  return measure_rate(*loop, sweeps * n_spheres);
 }
 
 const char* verdict_of(const Mixture& mixture, double ratio) {
@@ -101,8 +107,12 @@ void print_tapped(const std::vector<Side>& sides) {
   const double equal = median(sides.front().tapped_rates);
   for (const Side& side : sides) {
     const double rate = median(side.tapped_rates), ratio = rate / equal;
-    fmt::print("{:<22} {:6.1f} million trials/s, ratio {:.2f} {}\n", side.mixture.name, 1e-6 * rate,
-               ratio, verdict_of(side.mixture, ratio));
+    fmt::print(
+        "{:<22} {:6.1f} million trials/s, ratio {:.2f} {:<6} acceptance {:.4f}, {:.2f} distance "
+        "tests per trial, {:.1f} list renewals per sweep\n",
+        side.mixture.name, 1e-6 * rate, ratio, verdict_of(side.mixture, ratio),
+        side.last_tapped.acceptance, side.last_tapped.distance_tests_per_trial,
+        side.last_tapped.list_renewals_per_sweep);
   }
 }
 
@@ -133,13 +143,14 @@ void compare(int turns) {
     loop->run(10 * n_spheres);  // lists made, caches warm
     skipping->run(200 * n_spheres);
     sides.push_back(
-        {std::move(mixture), bed, std::move(loop), std::move(skipping), {}, {}, {}, {}, {}});
+        {std::move(mixture), bed, std::move(loop), std::move(skipping), {}, {}, {}, {}, {}, {}});
   }
   for (int turn = 0; turn < turns; ++turn) {
     for (Side& side : sides) {
       side.last = measure_rate(*side.loop, 1'000'000);
       side.rates.push_back(side.last.trials_per_second());
-      side.tapped_rates.push_back(tapped_rate(side, static_cast<std::uint64_t>(turn)));
+      side.last_tapped = tapped_rate(side, static_cast<std::uint64_t>(turn));
+      side.tapped_rates.push_back(side.last_tapped.trials_per_second());
       const Rate skipped = measure_rate(*side.skipping, 8'000'000);
       side.skipping_rates.push_back(skipped.trials_per_second());
       side.step_seconds.push_back(skipped.seconds /

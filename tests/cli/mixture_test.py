@@ -38,8 +38,8 @@ def grains(**changes):
     return changed(scene, **changes)
 
 
-def scattered():
-    """Spheres of the kinds above, none of which overlap, as extended XYZ."""
+def scattered(unit=1):
+    """Spheres of the kinds above, none of which overlap, as extended XYZ; all lengths times `unit`."""
     numbers = random.Random(5)
     spheres = [(kind["name"], kind.get("diameter", 1)) for kind in KINDS for _ in range(kind["count"])]
     placed = {}
@@ -53,9 +53,10 @@ def scattered():
             reach = [1e-9 + (d + spheres[j][1]) / 2 for j in placed]
             if all(np.linalg.norm(way) > least for way, least in zip(ways, reach)):
                 placed[i] = r
-    lines = [str(len(spheres)), f'Lattice="{WIDTH} 0 0 0 {WIDTH} 0 0 0 16" Properties=species:S:1:pos:R:3:diameter:R:1 '
-             "container=periodic"]
-    return "\n".join(lines + [f"{name} {placed[i][0]} {placed[i][1]} {placed[i][2]} {d}"
+    side = unit * WIDTH
+    lines = [str(len(spheres)), f'Lattice="{side} 0 0 0 {side} 0 0 0 {unit * 16}" Properties=species:S:1:pos:R:3:'
+             "diameter:R:1 container=periodic"]
+    return "\n".join(lines + [" ".join([name, *(str(unit * x) for x in placed[i]), str(unit * d)])
                               for i, (name, d) in enumerate(spheres)]) + "\n"
 
 
@@ -84,6 +85,72 @@ class Mixtures(Case):
 
     def test_threads_shards_and_resumes_give_the_same_digest(self):
         self.same_digests(SCENE, SHORTER)
+
+    def test_all_lengths_doubled_give_doubled_centres_to_the_bit(self):
+        """Lengths of file, container, moves and lifts; m g dz is 16 times as much, so that beta is a sixteenth."""
+        self.write(scattered(2), "doubled.xyz")
+        for move, doubled_move in (
+                ({"polar": {"max_step": 0.1}}, {"polar": {"max_step": 0.2}}),
+                ({"metropolis": {"max_step": 0.1, "beta": 16}}, {"metropolis": {"max_step": 0.2, "beta": 1}})):
+            kept = []
+            for unit, relax, file in ((1, move, "start.xyz"), (2, doubled_move, "doubled.xyz")):
+                kinds = [{**kind, "diameter": unit * kind.get("diameter", 1)} for kind in KINDS]
+                self.write(changed(SCENE, spheres=kinds, container={"sides": "periodic", "width": unit * WIDTH},
+                                   start={"file": file}, relax={**relax, "stop": SCENE["relax"]["stop"]},
+                                   protocol=[{"tap": {"dilate": 0.1}, "count": 4},
+                                             {"tap": {"lift": unit * 0.5}, "count": 1}],
+                                   observe=["mean_height"], snapshots={"taps": [0, 3, 5]}, realizations=1))
+                self.run_scene("-o", "a.h5", "--force")
+                with h5py.File(self.folder / "a.h5") as results:
+                    kept.append(results["particles/point_0000_realization_00000/position/value"][()])
+            np.testing.assert_array_equal(2 * kept[0], kept[1])
+            self.assertFalse(np.array_equal(kept[0][0], kept[0][2]))
+
+    def test_kinds_of_diameter_1_give_what_equal_spheres_give(self):
+        """Centres to the bit, observables and snapshots to 1e-12: moves, samplers, contact laws, containers."""
+        kinds = [{"name": "a", "count": 25}, {"name": "b", "count": 20, "diameter": {"list": [1] * 20}}]
+        stop = {"stop": {"sweeps": 150}}
+        dashpots = {"linear_spring_dashpot": {"stiffness": 5e3, "friction": 0.3}}
+        rest = ENGINE["discrete_element"]["rest"]
+        for sides, engine in (({"sides": "periodic", "width": 3.5}, {"relax": {"polar": {}, **stop}}),
+                              ({"sides": "walls", "width": 3.5}, {"relax": {"metropolis": {"beta": 9}, **stop}}),
+                              ({"sides": "cylinder", "diameter": 4}, {"relax": {
+                                  "polar": {}, "sampler": "skipping", "stop": {"sweeps": 2000}}}),
+                              ({"sides": "plates", "width": 3.5, "gap": 3}, {"engine": ENGINE}),
+                              ({"sides": "periodic", "width": 3.5}, {"engine": {"discrete_element": {
+                                  "contact": dashpots, "rest": rest}}})):
+            files = []
+            for spheres in (45, kinds):
+                scene = changed(SCENE, container=sides, start={"pour": "steepest_descent"}, realizations=1, **engine,
+                                protocol=[{"tap": {"dilate": 0.1}, "count": 1}, {"tap": {"lift": 0.3}, "count": 1}],
+                                snapshots={"taps": [0, 2]},
+                                observe=["mean_height", "bulk_fraction", "bottom_fraction"])
+                scene = {**scene, "spheres": spheres, **({"pour_order": "as_listed"} if spheres == kinds else {})}
+                if "engine" in engine:
+                    del scene["relax"]
+                self.write(scene)
+                self.run_scene("-o", f"{len(files)}.h5", "--force")
+                files.append(h5py.File(self.folder / f"{len(files)}.h5"))
+            self.same_numbers(*files)
+
+    def same_numbers(self, equal, sized):
+        compared = []
+
+        def compare(name, node):
+            if not isinstance(node, h5py.Dataset) or node.dtype.kind not in "fiu":
+                return
+            if name.startswith(("observables", "snapshots", "particles", "ensemble")):
+                compared.append(name)
+                exact = name.startswith("particles")
+                np.testing.assert_allclose(sized[name][()], node[()], rtol=0 if exact else 1e-12,
+                                           atol=0 if exact else 1e-12, err_msg=name)
+
+        equal.visititems(compare)
+        for file in (equal, sized):
+            file.close()
+        for name in ("observables/point_0000/bulk_fraction", "snapshots/point_0000/coordination"):
+            self.assertIn(name, compared)
+        self.assertTrue(any(name.endswith("position/value") for name in compared))
 
     def test_grains_of_several_sizes_give_the_same_digest_however_they_are_run(self):
         keep = grains()["snapshots"]["keep"]

@@ -73,8 +73,8 @@ TEST_CASE("no tap creates an overlap beyond rounding") {
 
 TEST_CASE("no tap of a mixture creates an overlap beyond rounding") {
   for (const double ratio : {1.4, 4.0, 10.0}) {
-    for (const Container& container :
-         {Container{PeriodicBox{7, 7}}, Container{WalledBox{5, 5}}, Container{Cylinder{5.5}}}) {
+    for (const Container& container : {Container{PeriodicBox{7, 7}}, Container{WalledBox{5, 5}},
+                                       Container{Cylinder{5.5}}, Container{Plates{7, 5}}}) {
       const Packing packing = random_mixture(container, graded_diameters(60, 0.3, ratio), 6, 4);
       for (const Tap& tap : {Tap{Dilate{0.1}}, Tap{DilateFloorHeld{0.1}}, Tap{Lift{0.3}},
                              Tap{Shake{0.05, 0.3, 5}}, Tap{Dilate{1e-16}}}) {

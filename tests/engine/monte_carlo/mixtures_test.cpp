@@ -48,8 +48,9 @@ Packing packing_after(TrialLoop& loop, Packing packing, std::uint64_t trials) {
 }  // namespace
 
 TEST_CASE("sizes of diameter 1 give the centres of equal spheres, bit for bit") {
-  for (const Container& container : std::vector<Container>{
-           PeriodicBox{4.3, 5}, WalledBox{4, 4}, Cylinder{4.5}, FullyPeriodicBox{4, 4.5, 5}}) {
+  for (const Container& container :
+       std::vector<Container>{PeriodicBox{4.3, 5}, WalledBox{4, 4}, Cylinder{4.5},
+                              FullyPeriodicBox{4, 4.5, 5}, Plates{4.3, 4}}) {
     const Packing start = random_packing(container, 45, 6, 8);
     std::vector<Move> all = moves(2);
     MetropolisMove adaptive{0.3};
@@ -78,7 +79,7 @@ TEST_CASE("a mixture makes the trajectory of a plain loop over all spheres, bit 
     const double smallest = 3 / ratio;
     for (const Container& container :
          std::vector<Container>{PeriodicBox{6.2, 6.4}, WalledBox{3.1, 6}, Cylinder{3.4},
-                                Cylinder{6}, FullyPeriodicBox{6.3, 6.5, 7}}) {
+                                Cylinder{6}, FullyPeriodicBox{6.3, 6.5, 7}, Plates{6.2, 4}}) {
       const auto n = static_cast<std::uint32_t>(has_gravity(container) ? 50 : ratio < 2 ? 12 : 25);
       const std::vector<double> diameters = graded_diameters(n, smallest, ratio);
       double cubes = 0;
@@ -127,8 +128,9 @@ TEST_CASE("all lengths doubled, a mixture has doubled centres, bit for bit") {
   const auto twice = [](const Container& container) {
     return *container_of(name_of(container), 2.0 * extent(container));
   };
-  for (const Container& container : std::vector<Container>{
-           PeriodicBox{6.2, 6.4}, WalledBox{4.1, 6}, Cylinder{5}, FullyPeriodicBox{6.3, 6.5, 7}}) {
+  for (const Container& container :
+       std::vector<Container>{PeriodicBox{6.2, 6.4}, WalledBox{4.1, 6}, Cylinder{5},
+                              FullyPeriodicBox{6.3, 6.5, 7}, Plates{6.2, 4}}) {
     const std::vector<double> diameters = graded_diameters(40, 0.3, 10);
     const Packing start = random_mixture(container, diameters, 9, 21);
     std::vector<double> doubled_diameters = diameters;

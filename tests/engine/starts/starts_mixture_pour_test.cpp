@@ -62,7 +62,7 @@ TEST_CASE("Poured spheres of several sizes do not overlap, and are carried") {
     const double width = 2.6 * ratio;
     for (const Container& container :
          {Container{PeriodicBox{width, width + 1}}, Container{WalledBox{width, 1.7 * ratio}},
-          Container{Cylinder{width}}}) {
+          Container{Cylinder{width}}, Container{Plates{width, 1.7 * ratio}}}) {
       for (const PourOrder order : {PourOrder::random, PourOrder::as_listed, PourOrder::large_first,
                                     PourOrder::small_first}) {
         CAPTURE(ratio, container.index(), static_cast<int>(order));
@@ -80,7 +80,7 @@ TEST_CASE("Spheres of several sizes come to rest where a brute-force descent doe
     const double width = 2.3 * ratio;
     for (const Container& container :
          {Container{PeriodicBox{width, width + 1}}, Container{WalledBox{width, width}},
-          Container{Cylinder{width}}}) {
+          Container{Cylinder{width}}, Container{Plates{width, width}}}) {
       const StartSpheres spheres = with_diameters(two_sizes(n, ratio));
       PourBed bed(container, spheres.sizes);
       std::vector<double> in_bed;
@@ -157,7 +157,7 @@ TEST_CASE("A small sphere sifts through three large ones that touch, from a rati
 TEST_CASE("Sizes of diameter 1 are poured to the bits of equal spheres") {
   for (const Container& container :
        {Container{PeriodicBox{5, 6}}, Container{WalledBox{5, 4.5}}, Container{Cylinder{5.5}},
-        Container{Cylinder{1.8}}, Container{WalledBox{1.3, 4}}}) {
+        Container{Cylinder{1.8}}, Container{WalledBox{1.3, 4}}, Container{Plates{5, 4.5}}}) {
     const StartSpheres spheres = with_diameters(std::vector<double>(200, 1), PourOrder::as_listed);
     RandomStream random(stream_key(1, 0, 0, Purpose::start));
     const Packing equal = make_start(SteepestDescentPour{}, container, 200, random);
@@ -172,7 +172,8 @@ TEST_CASE("All lengths doubled give a pour with its centres doubled, bit for bit
   const std::vector<std::pair<Container, Container>> pairs = {
       {PeriodicBox{8.3, 9.1}, PeriodicBox{16.6, 18.2}},
       {WalledBox{8.3, 9.1}, WalledBox{16.6, 18.2}},
-      {Cylinder{9.1}, Cylinder{18.2}}};
+      {Cylinder{9.1}, Cylinder{18.2}},
+      {Plates{8.3, 9.1}, Plates{16.6, 18.2}}};
   for (const auto& [single, wide] : pairs) {
     CHECK(poured(wide, with_diameters(twice)).centres ==
           doubled(poured(single, with_diameters(diameters))).centres);
