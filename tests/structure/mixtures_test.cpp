@@ -35,9 +35,9 @@ const std::vector<double>& values(const Measurement& measurement, std::string_vi
 }
 
 /// Spheres of diameters 0.6 and 1.5 on random places without overlaps, a box of 8 x 8 x 10.
-Packing two_sizes(std::size_t n = 500) {
+Packing two_sizes(std::size_t n = 500, const Container& container = PeriodicBox{8, 8}) {
   RandomStream random(stream_key(4, 0, 0, Purpose::start));
-  Packing packing{PeriodicBox{8, 8}, {}};
+  Packing packing{container, {}};
   const Boundary boundary(packing.container);
   std::vector<double> diameters;
   std::vector<std::uint32_t> kinds;
@@ -46,7 +46,8 @@ Packing two_sizes(std::size_t n = 500) {
     const double radius = kind == 1 ? 0.75 : 0.3;
     const Vec3 r{8 * random.uniform(), 8 * random.uniform(),
                  radius + (10 - 2 * radius) * random.uniform()};
-    bool free = true;
+    bool free =
+        std::visit([&](const auto& box) { return clear_of_boundaries(box, r, radius); }, container);
     for (std::size_t j = 0; j < packing.centres.size() && free; ++j) {
       const double contact = radius + 0.5 * diameters[j];
       free = norm_squared(separation(boundary, r, packing.centres[j])) >= contact * contact;
@@ -202,11 +203,15 @@ TEST_CASE("structure: parts that require equal spheres are refused by name") {
 }
 
 TEST_CASE("structure: radical cells fill the box and are those of voro++ called apart") {
-  const Packing packing = two_sizes();
+  const Container container =
+      GENERATE(Container{PeriodicBox{8, 8}}, Container{WalledBox{8, 8}}, Container{Plates{8, 8}});
+  const Boundary boundary(container);
+  const Packing packing = two_sizes(500, container);
   const double lid = surface_height(packing);
   const VoronoiCells cells = voronoi_cells(packing);
   CHECK(cells.inconsistent == 0);
-  voro::container_poly twin(0, 8, 0, 8, 0, lid, 6, 6, 6, true, true, false, 8);
+  voro::container_poly twin(0, 8, 0, 8, 0, lid, 6, 6, 6, boundary.periodic_x, boundary.periodic_y,
+                            false, 8);
   for (std::size_t i = 0; i < packing.centres.size(); ++i) {
     const Vec3 r = packing.centres[i];
     twin.put(static_cast<int>(i), r.x, r.y, r.z, packing.radius(i));
