@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
@@ -145,11 +146,9 @@ class BlockerCaches {
     const Index* const row = lists.row(i);
     for (Index m = 1; m <= row[0]; ++m) {
       const Index j = row[m];
-      const Index* const second_row = lists.row(j);
-      const Index n = std::min(second_row[0], caches_[j].shown());
-      for (Index lane = 0; lane < n; ++lane) {
-        if (second_row[1 + lane] == i) caches_[j].see(box, centres[j], centres[i], lane, longest_);
-      }
+      const Index lane = lane_of(i, lists.row(j));
+      if (lane < Cache::size && lane < caches_[j].shown())
+        caches_[j].see(box, centres[j], centres[i], lane, longest_);
     }
   }
 
@@ -166,6 +165,17 @@ class BlockerCaches {
   std::size_t bytes() const { return sizeof(Cache) * caches_.capacity(); }
 
  private:
+  using FourIndices = Index __attribute__((vector_size(16), aligned(4), may_alias));
+
+  // The place of sphere i in a row that holds it, or Cache::size where it is not among the first. A
+  // row has more room than a cache. Entries behind the end of a short row are not found, because
+  // the row itself has sphere i before them.
+  [[gnu::always_inline]] static Index lane_of(Index i, const Index* row) {
+    const auto matches = *reinterpret_cast<const FourIndices*>(row + 1) == i;
+    const unsigned lanes = bits_of_four((FourMask)matches);
+    return static_cast<Index>(std::countr_zero(lanes | 1u << Cache::size));
+  }
+
   double longest_ = 0;
   std::vector<Cache, LargePageAllocator<Cache>> caches_;
 };
