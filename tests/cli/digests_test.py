@@ -98,6 +98,29 @@ SCENES = {
         until={"targets": [{"observable": "mean_height", "standard_error": 0.01}], "at_most": 12}),
 }
 
+KINDS = [{"name": "small", "count": 50, "diameter": {"lognormal": {"mean": 0.7, "deviation": 0.07}}},
+         {"name": "large", "count": 6, "diameter": 1.5, "density": 2},
+         {"name": "intruder", "count": 1, "diameter": 2.5, "place": [2, 2]}]
+SCENES |= {
+    "several_sizes": scene(
+        container={"sides": "walls", "width": 4}, spheres=KINDS,
+        protocol=[taps({"dilate": 0.05}), taps({"shake": {"lambda": 0.05, "lateral_radius": 0.1, "retries": 3}}, 1)],
+        relax={"metropolis": {"beta": 9}, "stop": {"sweeps": 200}},
+        observe=["mean_height", "segregation", {"lacey_index": {"cell": 2, "kind": "large"}}],
+        snapshots={"taps": [0, 3]}),
+    "several_sizes_skipped": scene(
+        spheres=[{"name": "small", "count": 60}, {"name": "large", "count": 9, "diameter": {"uniform": {
+            "from": 1.2, "to": 1.7}}}], container={"sides": "periodic", "width": 4}, pour_order="small_first",
+        protocol=[taps({"dilate_floor_held": 0.1})],
+        relax={"polar": {}, "sampler": "skipping", "stop": {"mean_height": {"eta": 1e-4, "every_sweeps": 50}}},
+        observe=["mean_height", "segregation"], snapshots={"taps": [0, 2]}),
+    "several_sizes_grown": scene(
+        container={"sides": "fully_periodic", "width": 5, "height": 5}, start={"grow": {}},
+        spheres=[{"name": "small", "count": 60}, {"name": "large", "count": 12, "diameter": 1.6}],
+        protocol=[taps({"dilate": 0}, 1)], relax={"metropolis": {}, "stop": {"sweeps": 100}}, observe=[],
+        snapshots={"taps": [0, 1], "keep": ["positions"]}),
+}
+
 SOFT = {"walton_braun": {"stiffness": 1e4, "friction": 0.3}}
 DASHPOTS = {"linear_spring_dashpot": {"stiffness": 1e4, "restitution": 0.5}}
 SCENES |= {
@@ -111,9 +134,7 @@ SCENES |= {
         protocol=[taps({"dilate": 0.1}, 1)], snapshots={"taps": [0, 1]}),
     "grains_of_several_sizes": scene(
         container={"sides": "walls", "width": 4},
-        spheres=[{"name": "small", "count": 50, "diameter": {"lognormal": {"mean": 0.7, "deviation": 0.07}}},
-                 {"name": "large", "count": 6, "diameter": 1.5, "density": 2},
-                 {"name": "intruder", "count": 1, "diameter": 2.5, "place": [2, 2]}],
+        spheres=KINDS,
         engine={"discrete_element": {"contact": SOFT, "rest": {"timed": {"seconds": 0.1}}}},
         protocol=[taps({"half_sine": {"amplitude": 0.4, "frequency": 7.5}})],
         observe=["mean_height", {"kind_height": {"kind": "intruder"}}], snapshots={"taps": [0, 2]}),
