@@ -11,7 +11,7 @@ using namespace jostle;
 namespace {
 
 constexpr std::uint32_t n_spheres = 60;
-const Container box = PeriodicBox{3.5, 3.5};
+const Container narrow_box = PeriodicBox{3.5, 3.5};
 
 Packing column(const Container& container, std::uint32_t n) {
   RandomStream random(stream_key(20260107, 0, 0, Purpose::start));
@@ -77,7 +77,7 @@ TEST_CASE("grains with every friction from none to ten come to rest and are tapp
     CAPTURE(friction);
     DiscreteElement settings;
     settings.spheres = WaltonBraun{.friction = friction};
-    Bed bed(settings, column(box, n_spheres));
+    Bed bed(settings, column(narrow_box, n_spheres));
     check_sound(bed);
     CHECK(bed["contacts"] > 3);
     CHECK((bed["friction_energy"] > 0) == (friction > 0));
@@ -94,7 +94,7 @@ TEST_CASE("grains of a stiffness over four decades") {
     CAPTURE(stiffness);
     DiscreteElement settings;
     settings.spheres = WaltonBraun{.stiffness = stiffness};
-    Bed bed(settings, column(box, 24));
+    Bed bed(settings, column(narrow_box, 24));
     check_sound(bed);
     CHECK(bed["greatest_overlap"] <
           0.5 * overlap);  // in proportion to the root of the stiffness at equal speeds
@@ -108,7 +108,7 @@ TEST_CASE("grains that hardly rebound, and grains that lose nothing") {
   settings.most_seconds = 0.8;
   // In steps of a twentieth. K2 is 400 K1: of few spheres on the floor what was latched rings on,
   // and quiet is not reached.
-  Bed bed(settings, column(box, 8));
+  Bed bed(settings, column(narrow_box, 8));
   for (int tap = 0; tap < 2; ++tap) {
     CHECK(std::abs(bed["ledger_error"]) < 5e-3);
     CHECK(bed["greatest_overlap"] < 0.2);
@@ -118,13 +118,13 @@ TEST_CASE("grains that hardly rebound, and grains that lose nothing") {
   // Elastic and without friction: never at rest, its energy stays.
   settings.spheres = WaltonBraun{.restitution = 1, .friction = 0};
   settings.most_seconds = 1;
-  Bed elastic(settings, column(box, n_spheres));
+  Bed elastic(settings, column(narrow_box, n_spheres));
   CHECK(elastic["capped"] == 1);
   CHECK(elastic["latched_energy"] == 0);
   CHECK(elastic["friction_energy"] == 0);
   CHECK(std::isnan(elastic["ledger_error"]));
   double potential = 0;
-  for (const Vec3& r : column(box, n_spheres).centres) potential += r.z / n_spheres;
+  for (const Vec3& r : column(narrow_box, n_spheres).centres) potential += r.z / n_spheres;
   const double held = elastic.mean_height() + elastic["kinetic_energy"] + elastic["elastic_energy"];
   CHECK(held == Approx(potential).epsilon(2e-3));
 }
@@ -136,7 +136,7 @@ TEST_CASE("one grain and two") {
       DiscreteElement settings;
       settings.spheres = law;
       settings.most_seconds = 20;
-      Bed bed(settings, column(box, n));
+      Bed bed(settings, column(narrow_box, n));
       CHECK(bed["capped"] == 0);
       CHECK(bed.mean_height() == Approx(0.5).margin(2e-3));
       bed.tap(HalfSine{0.4413, 7.5});
@@ -150,7 +150,7 @@ TEST_CASE("one grain and two") {
 // The corner of the range of Rosato et al. 2010, fig. 15: Gamma = 313.
 TEST_CASE("grains shaken at 90 Hz by half a diameter") {
   DiscreteElement settings;
-  Bed bed(settings, column(box, n_spheres));
+  Bed bed(settings, column(narrow_box, n_spheres));
   bed.tap(Vibration{0.48, 90, 30});
   check_sound(bed);
   CHECK(bed["input_energy"] > 10);  // m g d a sphere
@@ -160,7 +160,7 @@ TEST_CASE("grains shaken at 90 Hz by half a diameter") {
 // At the bottom of its path the floor is further below its place than a sphere may fall through it.
 TEST_CASE("grains on a floor that goes two diameters down and up") {
   DiscreteElement settings;
-  Bed bed(settings, column(box, n_spheres));
+  Bed bed(settings, column(narrow_box, n_spheres));
   bed.tap(Vibration{2, 4, 10});
   check_sound(bed);
   CHECK(bed["capped"] == 0);
@@ -171,7 +171,7 @@ TEST_CASE("a bed without a lid that is thrown a hundred diameters high comes dow
   DiscreteElement settings;
   settings.spheres = WaltonBraun{.stiffness = 1e6};
   settings.most_seconds = 10;
-  Bed bed(settings, column(box, n_spheres));
+  Bed bed(settings, column(narrow_box, n_spheres));
   // Speed sqrt(2 x 100 g d) and more at once: a 2 pi f.
   bed.tap(HalfSine{5, 10.5});
   check_sound(bed);
@@ -193,9 +193,9 @@ TEST_CASE("grains at rest for ten million steps stay where they are", "[nightly]
   const double step = contact_times(settings).step_seconds;
   settings.rest = TimedRest{3};
   settings.most_seconds = 1e4;
-  const Bed settled(settings, column(box, n_spheres));
+  const Bed settled(settings, column(narrow_box, n_spheres));
   settings.rest = TimedRest{3 + 1e7 * step};
-  const Bed bed(settings, column(box, n_spheres));
+  const Bed bed(settings, column(narrow_box, n_spheres));
   CHECK(bed.mean_height() == Approx(settled.mean_height()).margin(1e-6));
   // It loses what still rings, and gains nothing.
   const auto held = [](const Bed& sample) {
