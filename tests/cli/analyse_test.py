@@ -205,10 +205,31 @@ class Analyses(Analysed):
             axis = stored["analysis/sweep/mean_height/value/sqrt_epsilon"]
             self.assertEqual(axis.attrs["long_name"], "strength of the taps of stage 1")
 
+    def test_a_sweep_without_any_value_states_what_was_sought_and_why_there_is_none(self):
+        # 33 taps of beds that still move are too few for their memory: every sigma is a lower bound.
+        scene = changed(TAPPED, protocol=[{"tap": {"dilate": 0.05}, "count": 33}],
+                        sweep={"/protocol/0/tap/dilate": [0.0001, 0.0004]},
+                        analyse={"steady": [{"observable": "mean_height", "last": 33}],
+                                 "sweep": [{"observable": "mean_height", "quantity": "steady/sigma"}]})
+        self.write(scene)
+        self.run_scene()
+        with h5py.File(self.folder / "tiny.h5") as stored:
+            sweep = stored["analysis/sweep/mean_height/steady_sigma"]
+            refused = sweep.attrs["note_refused"]
+            self.assertEqual([*sweep], [])
+        self.assertRegex(refused, "^no sweep point has a value of steady/sigma of mean_height; "
+                                  "at sqrt_epsilon = 0.01, 0.02: lower bound of the deviation .*: the taps are too few "
+                                  "for their memory. Average over more taps")
+        shown = self.jostle("analyse", "tiny.h5", "sweep", "--observable", "mean_height", "--quantity", "steady/sigma",
+                            expect=BAD_INPUT)
+        self.assertNotIn("0 rows", shown.stdout)
+        self.assertIn("no sweep point has a value of steady/sigma", " ".join(shown.stderr.split()))
+
     def test_a_sweep_is_drawn_against_the_square_root_of_epsilon(self):
         asked = {"steady": [{"observable": "mean_height"}],
                  "sweep": [{"observable": "bottom_fraction", "last": 50},
                            {"observable": "mean_height", "quantity": "steady/sigma"},
+                           {"observable": "mean_height", "quantity": "steady/value"},
                            {"observable": "mean_height", "quantity": "inverse_log/dX"},
                            {"observable": "bottom_fraction", "quantity": "inverse_log/X_inf"}]}
         scene = changed(TAPPED, analyse=asked, streams="matched",
@@ -218,10 +239,9 @@ class Analyses(Analysed):
         self.write(scene)
         self.run_scene()
         with h5py.File(self.folder / "tiny.h5") as stored:
-            rise = stored["analysis/sweep/mean_height/inverse_log_dX/dX"]
-            self.assertEqual(rise.attrs["units"], "diameter")
-            self.assertIn("longer side of the 68 % interval",
-                          stored["analysis/sweep/mean_height/inverse_log_dX"].attrs["note_errors"])
+            # No point has a rise with two limits.
+            rise = stored["analysis/sweep/mean_height/inverse_log_dX"].attrs["note_refused"]
+            self.assertIn("no sweep point has a value of inverse_log/dX of mean_height; at sqrt_epsilon = ", rise)
             value = stored["analysis/sweep/bottom_fraction/value"]
             self.assertEqual([round(x, 12) for x in value["sqrt_epsilon"][:]], [0.1, 0.2, 0.3])
             means = [self.series("bottom_fraction", point)[-50:].mean() for point in (1, 2, 0)]
@@ -234,12 +254,13 @@ class Analyses(Analysed):
             self.assertAlmostEqual(value["pooled_sigma"][()] / ((rest ** 2).sum() / dof) ** 0.5, 1, places=9)
             self.assertIn("about its own level", value["pooled_sigma"].attrs["long_name"])
             # A deviation that is only known to be at least its value is no point.
-            steady = [stored[f"analysis/point_{point:04}/steady/mean_height/sigma"] for point in (1, 2, 0)]
-            measured = [sigma[()] for sigma in steady
-                        if not sigma.attrs["long_name"].startswith("lower bound")]
+            for point in (1, 2, 0):
+                sigma = stored[f"analysis/point_{point:04}/steady/mean_height/sigma"]
+                self.assertTrue(sigma.attrs["long_name"].startswith("lower bound"))
             sweep = stored["analysis/sweep/mean_height/steady_sigma"]
-            self.assertEqual(list(sweep["sigma"][:]), measured)
-            self.assertEqual(sweep.attrs.get("note_left_out", "").count("lower bound"), 3 - len(measured))
+            self.assertIn("at sqrt_epsilon = 0.1, 0.2, 0.3: lower bound", sweep.attrs["note_refused"])
+            self.assertEqual(
+                stored["analysis/sweep/mean_height/steady_value/value"].attrs["units"], "diameter")
             # Points whose fits do not limit the parameter on both sides are left out, and named.
             drawn = stored["analysis/sweep/bottom_fraction/inverse_log_X_inf"]
             known, unknown = {}, 0
@@ -256,6 +277,7 @@ class Analyses(Analysed):
             self.assertEqual(dict(zip((round(x, 12) for x in drawn["sqrt_epsilon"][:]),
                                       drawn["X_inf"][:])), known)
             self.assertGreater(unknown, 0)
+            self.assertIn("longer side of the 68 % interval", drawn.attrs["note_errors"])
             self.assertEqual(value.attrs["note_taps"], "111 to 160")
 
         # A value zipped with the swept value is no sweep of its own; a crossed one is.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <system_error>
 
@@ -276,6 +277,41 @@ Table curve_table(std::string name, std::span<const Member> members,
   return table;
 }
 
+bool has_value(const Member& member) {
+  return std::isfinite(member.y) ||
+         std::ranges::any_of(member.realizations, [](double mean) { return std::isfinite(mean); });
+}
+
+/// Advice for a sweep without any value.
+const char* advice_on(const std::string& quantity) {
+  if (quantity == "value") return "Run realizations that reach their last taps";
+  if (quantity.starts_with("steady/"))
+    return "Average over more taps (--last), tap longer, or sweep the mean of the last taps "
+           "(quantity value)";
+  return "Tap longer or run more realizations, or sweep another quantity";
+}
+
+/// Describes what was looked for, where, and why there is none.
+std::string why_no_value(std::span<const Member> members,
+                         const AnalysisRequest<SweepSettings>& request) {
+  std::map<std::string, std::set<double>> places;
+  for (const Member& member : members) {
+    places[member.no_value.empty() ? "it is not defined for these taps" : member.no_value].insert(
+        member.x);
+  }
+  std::vector<std::string> reasons;
+  for (const auto& [reason, all] : places) {
+    std::vector<std::string> texts;
+    for (const double x : all) texts.push_back(finite_text("{:.4g}", x));
+    reasons.push_back(
+        fmt::format("at {} = {}: {}", members.front().swept.name, joined(texts, ", "), reason));
+  }
+  const std::string& quantity = request.settings.quantity;
+  return fmt::format("no sweep point has a value of {}{}; {}. {}",
+                     quantity == "value" ? "" : quantity + " of ", request.observable,
+                     joined(reasons, "; "), advice_on(quantity));
+}
+
 /// A file with what is read of it once for all sweeps.
 class SweptFile {
  public:
@@ -380,8 +416,12 @@ std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const
       for (std::size_t i = 0; i < order.size(); ++i) {
         if (request.settings.quantity == "value")
           set_values(groups[order[i]], request.observable, request.settings.last);
-        Table table = curve_table(order.size() == 1 ? name : fmt::format("{}_{:04}", name, i),
-                                  groups[order[i]], request.settings.reference);
+        const std::string of_group = order.size() == 1 ? name : fmt::format("{}_{:04}", name, i);
+        const std::vector<Member>& members = groups[order[i]];
+        Table table =
+            std::ranges::any_of(members, has_value)
+                ? curve_table(of_group, members, request.settings.reference)
+                : Table{.name = of_group, .notes = {{"refused", why_no_value(members, request)}}};
         if (!order[i].empty()) table.notes.emplace_back("at", order[i]);
         tables.push_back(std::move(table));
       }
