@@ -115,7 +115,9 @@ std::string MemoryTest::name_of(std::size_t history) const {
   return name;
 }
 
-std::string MemoryTest::statement(const std::string& observable, const std::string& control) const {
+std::string MemoryTest::statement(const std::string& observable, const std::string& units,
+                                  const std::string& control) const {
+  const std::string unit = units == "1" || units.empty() ? "" : " " + units;
   if (realizations < 3)
     return fmt::format("cannot decide with {} realization{}: errors need three", realizations,
                        realizations == 1 ? "" : "s");
@@ -129,10 +131,10 @@ std::string MemoryTest::statement(const std::string& observable, const std::stri
   if (found.corrected < level) {
     const LagWindow& window = windows[found.window];
     return finite_text(
-        "{} alone is not the state: after {} {} and {} responses differ by {:+.3g} +- {:.2g} "
-        "(68 %) at lags {} to {} ({}, {} tests together, {} realizations)",
+        "{} alone is not the state: after {} {} and {} responses differ by {:+.3g} +- {:.2g}{} "
+        "(68 %) at lags {} to {} taps ({}, {} tests together, {} realizations)",
         observable, control, name_of(found.first), name_of(found.second), found.value,
-        student_half_width(found.error.error, static_cast<std::size_t>(found.error.dof) + 1),
+        student_half_width(found.error.error, static_cast<std::size_t>(found.error.dof) + 1), unit,
         window.first, window.last, plain_p_text(found.corrected), differences.size(), realizations);
   }
   const AlignedDifference& unseen =
@@ -146,14 +148,14 @@ std::string MemoryTest::statement(const std::string& observable, const std::stri
   const double seen = unseen.detectable;
   if (!(seen <= response)) {
     return finite_text(
-        "cannot decide with {} realizations: {}, but only a difference of {:.2g} "
-        "would have been found with 80 % at all lags, and the whole response is {:.2g}",
-        realizations, plain_p_text(found.corrected), seen, response);
+        "cannot decide with {} realizations: {}, but only a difference of {:.2g}{} "
+        "would have been found with 80 % at all lags, and the whole response is {:.2g}{}",
+        realizations, plain_p_text(found.corrected), seen, unit, response, unit);
   }
   return finite_text(
-      "no memory found: {} ({} tests together, {} realizations); a difference of {:.2g} "
-      "would have been found with 80 % at any lag, the whole response is {:.2g}",
-      plain_p_text(found.corrected), differences.size(), realizations, seen, response);
+      "no memory found: {} ({} tests together, {} realizations); a difference of {:.2g}{} "
+      "would have been found with 80 % at any lag, the whole response is {:.2g}{}",
+      plain_p_text(found.corrected), differences.size(), realizations, seen, unit, response, unit);
 }
 
 }  // namespace jostle::inline ensemble

@@ -58,8 +58,10 @@ struct MemoryTest {
   /// histories.
   double detectable() const;
   /// "phi alone is not the state", "no memory found" or "cannot decide", with test and power;
-  /// `control`: what the strengths of the histories are, which it names them by.
-  std::string statement(const std::string& observable, const std::string& control) const;
+  /// `units`: of the observable, "1" for a plain number; `control`: what the strengths of the
+  /// histories are, which it names them by. Lags are in taps.
+  std::string statement(const std::string& observable, const std::string& units,
+                        const std::string& control) const;
 
  private:
   /// Its strength, and its number where others have the same.

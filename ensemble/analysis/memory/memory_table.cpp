@@ -133,7 +133,7 @@ Table memory_table(std::string name, const Column& observable, const std::string
   add_differences(observable, control, units, test, table);
   table.notes = {{"observable", observable.name},
                  {"realizations", std::to_string(test.realizations)},
-                 {"verdict", test.statement(observable.name, control)}};
+                 {"verdict", test.statement(observable.name, observable.units, control)}};
   return table;
 }
 

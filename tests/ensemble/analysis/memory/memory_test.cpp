@@ -83,12 +83,16 @@ TEST_CASE("Histories are compared at equal values at the switch") {
   CHECK(shifted.differences[0].value == Approx(0.125).epsilon(1e-10));
   CHECK(shifted.differences[0].error.dof == 1);
   CHECK(
-      shifted.statement("phi", "dilate")
+      shifted.statement("phi", "1", "dilate")
           .starts_with("phi alone is not the state: after dilate 0.1 and 0.2 responses differ by"));
+  const std::string in_diameters = shifted.statement("height", "d", "dilate");
+  CHECK(in_diameters.find("responses differ by +0.125 +- ") != std::string::npos);
+  CHECK(in_diameters.find(" d (68 %) at lags 1 to 1 taps (p ") != std::string::npos);
+  CHECK(shifted.statement("phi", "1", "dilate").find(" 1 (68 %)") == std::string::npos);
   // One strength reached in two ways: by number.
   all[1].strength = 0.1;
   CHECK(memory_test(all, lag_windows(1))
-            .statement("phi", "dilate")
+            .statement("phi", "1", "dilate")
             .starts_with(
                 "phi alone is not the state: after dilate 0.1 (number 0) and 0.1 (number 1) "));
 }
@@ -124,13 +128,13 @@ TEST_CASE("Differences and their errors are those of a straight line, sum by sum
 TEST_CASE("Histories that differ by the same amount in every realization cannot be compared") {
   std::vector<History> all = {{0.1, 10, {0.5, 0.5, 0.5}, {1, 1, 1}},
                               {0.2, 20, {0.6, 0.6, 0.6}, {1, 1, 1}}};
-  const std::string still = memory_test(all, lag_windows(1)).statement("phi", "dilate");
+  const std::string still = memory_test(all, lag_windows(1)).statement("phi", "1", "dilate");
   CHECK(still ==
         "cannot decide: phi at the switch differs by the same amount in every realization between "
         "dilate 0.1 and 0.2, so that the difference at equal value has no error");
   // Beside a pair that can be compared.
   all.push_back({0.3, 5, {0.61, 0.58, 0.62}, {1.1, 1.3, 1.25}});
-  const std::string mixed = memory_test(all, lag_windows(1)).statement("phi", "dilate");
+  const std::string mixed = memory_test(all, lag_windows(1)).statement("phi", "1", "dilate");
   CHECK(mixed.starts_with("cannot decide: phi at the switch differs by the same amount"));
 }
 
@@ -154,13 +158,15 @@ TEST_CASE("An observable that never changes has no test of memory") {
     histories.push_back({strength, 0, std::vector<double>(4, 0.5), std::vector<double>(8, 0.5)});
   const std::uint64_t ends[] = {1, 10};
   const MemoryTest test = memory_test(histories, lag_windows(ends));
-  CHECK(test.statement("x", "gamma") ==
+  CHECK(test.statement("x", "1", "gamma") ==
         "cannot decide: x does not change after the switch of gamma");
 }
 
 TEST_CASE("Two realizations cannot test memory") {
   std::vector<History> all = {{0.1, 10, {0.5, 0.6}, {1, 2}}, {0.2, 20, {0.5, 0.61}, {3, 5}}};
-  CHECK(memory_test(all, lag_windows(1)).statement("phi", "dilate").starts_with("cannot decide"));
+  CHECK(memory_test(all, lag_windows(1))
+            .statement("phi", "1", "dilate")
+            .starts_with("cannot decide"));
 }
 
 namespace {
@@ -180,7 +186,7 @@ void check_rates(const std::vector<std::size_t>& all_realizations) {
       for (std::size_t e = 0; e < ensembles; ++e) {
         const std::uint64_t seed = 20003632 + e;
         const MemoryTest still = memory_test(histories(setting, 0, seed), windows);
-        const std::string statement = still.statement("phi", "dilate");
+        const std::string statement = still.statement("phi", "1", "dilate");
         alarms += statement.starts_with("phi alone is not");
         none += statement.starts_with("no memory");
         const double size = still.detectable();
@@ -188,7 +194,7 @@ void check_rates(const std::vector<std::size_t>& all_realizations) {
         // The offset fades: as large at the first lag, and seen by pairs 0-1 and 1-2.
         const std::string text_with =
             memory_test(histories(setting, size * std::exp(1.0 / 30), seed), windows)
-                .statement("phi", "dilate");
+                .statement("phi", "1", "dilate");
         found += text_with.starts_with("phi alone is not");
         missed += text_with.starts_with("no memory");
       }
