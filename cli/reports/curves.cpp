@@ -12,6 +12,7 @@
 #include "ensemble/statistics/finite_text.hpp"
 #include "fitting/value_text.hpp"
 #include "study/tables/points/half_widths.hpp"
+#include "study/tables/repeated_series.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -160,7 +161,8 @@ std::string lines_of_points(const ResultsFile& file, std::size_t width, Glyphs g
   Range range;
   std::size_t longest = 0;
   for (std::uint32_t point = 0; point < n_points; ++point) {
-    const std::vector<EnsembleSeries> columns = file.ensemble(point);
+    const std::vector<EnsembleSeries> columns =
+        distinct_ensemble(file, point, repetitions(file, point));
     if (columns.empty()) continue;  // not begun
     const EnsembleSeries& series = columns[chosen_column(columns)];
     name = series.label.name;
@@ -239,7 +241,7 @@ std::string sparkline(std::span<const double> values, double low, double high, s
 
 std::string compaction_curves(const ResultsFile& file, std::size_t width, Glyphs glyphs) {
   if (file.study().points.size() > 1) return lines_of_points(file, width, glyphs);
-  const std::vector<EnsembleSeries> columns = file.ensemble(0);
+  const std::vector<EnsembleSeries> columns = distinct_ensemble(file, 0, repetitions(file, 0));
   if (columns.empty()) return "";
   const EnsembleSeries& series = columns[chosen_column(columns)];
   return curve_text(series.label.name, curve_of(series), width, glyphs);

@@ -179,6 +179,7 @@ PointReport point_report(const ResultsFile& file, std::uint32_t point,
   std::string rest;
   if (!series.reached.empty()) {
     report.table += tap_table(series, layout);
+    if (!series.copies.empty()) report.table += wrapped(series.copies + ".\n", layout.width);
     report.sentence = wrapped(sentences(series), layout.width);
     rest = growth_line(series) + fitting_line(file, point);
   }

@@ -10,6 +10,7 @@
 #include "cli/tables/wrapped.hpp"
 #include "fitting/value_text.hpp"
 #include "study/tables/points/half_widths.hpp"
+#include "study/tables/repeated_series.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -75,7 +76,9 @@ void make_room(std::vector<ShownColumn>& columns, std::size_t width) {
 
 PointSeries point_series(const ResultsFile& file, std::uint32_t point,
                          std::span<const RealizationSummary> realizations) {
-  PointSeries series{file.ensemble(point), {}};
+  const Repetitions copies = repetitions(file, point);
+  PointSeries series{distinct_ensemble(file, point, copies), {}};
+  series.copies = copies.text;
   for (const RealizationSummary& realization : realizations) {
     if (in_share(file.shard(), file.study(), realization.id)) ++series.planned;
     if (realization.rows == 0) continue;

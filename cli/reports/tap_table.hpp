@@ -15,6 +15,7 @@ struct PointSeries {
   std::vector<EnsembleSeries> columns;
   std::vector<std::uint32_t> reached;  // [n_taps]
   std::uint32_t planned = 0;           // realizations planned in the file's share
+  std::string copies = {};  // realizations left out of the columns because they repeat another
 };
 
 PointSeries point_series(const ResultsFile& file, std::uint32_t point,

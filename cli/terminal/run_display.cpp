@@ -36,16 +36,18 @@ void RunDisplay::compared(const PrecisionStatus& status) {
 }
 
 std::string precision_line(const PrecisionStatus& status) {
-  const char* const verdict = status.met ? "reached"
-                              : status.next > status.realizations
-                                  ? "not reached yet"
-                                  : "NOT reached, and no more are allowed";
+  const char* const verdict = status.met                          ? "reached"
+                              : status.next > status.realizations ? "not reached yet"
+                              : status.copies.empty() ? "NOT reached, and no more are allowed"
+                                                      : "NOT reached";
   const PrecisionStatus::Target& farthest = status.farthest;
-  const std::string value = std::isnan(farthest.value) ? "not known (fewer than two realizations)"
-                                                       : finite_text("{:.2g}", farthest.value);
-  return finite_text("{}: target precision {}: {} of {} is {}, target at most {:.2g}\n",
+  const std::string value = std::isnan(farthest.value)
+                                ? "not known (fewer than two independent realizations)"
+                                : finite_text("{:.2g}", farthest.value);
+  const std::string copies = status.copies.empty() ? "" : "; " + status.copies;
+  return finite_text("{}: target precision {}: {} of {} is {}, target at most {:.2g}{}\n",
                      counted(status.realizations, "realization"), verdict, farthest.spread,
-                     farthest.observable, value, farthest.at_most);
+                     farthest.observable, value, farthest.at_most, copies);
 }
 
 }  // namespace jostle::inline cli

@@ -8,6 +8,8 @@
 
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
+#include "engine/numbers.hpp"
+#include "ensemble/fold.hpp"
 #include "ensemble/moments.hpp"
 #include "study/bad_input.hpp"
 #include "study/tables/repeated_series.hpp"
@@ -17,6 +19,11 @@ namespace jostle::inline study {
 namespace {
 
 constexpr std::uint64_t piece_values = 128'000'000 / sizeof(double);
+
+bool is_usable(const RealizationSummary& summary) {
+  return summary.rows > 0 && (summary.status == RealizationStatus::done ||
+                              summary.status == RealizationStatus::running);
+}
 
 /// "sweep points 1, 2"; empty where there is none.
 std::string points_with(const ResultsFile& file, const std::string& observable) {
@@ -55,9 +62,7 @@ ObservableSeries::ObservableSeries(const ResultsFile& file, std::uint32_t point,
                                    const std::string& observable)
     : file_(file), point_(point), label_(label_named(file, point, observable)) {
   for (const RealizationSummary& summary : file.realizations()) {
-    const bool usable =
-        summary.status == RealizationStatus::done || summary.status == RealizationStatus::running;
-    if (summary.id.point != point || !usable || summary.rows == 0) continue;
+    if (summary.id.point != point || !is_usable(summary)) continue;
     n_rows_ = used_.empty() ? summary.rows : std::min(n_rows_, summary.rows);
     used_.push_back(summary.id.realization);
     reached_.push_back(summary.rows);
@@ -84,17 +89,40 @@ std::string ObservableSeries::copies() const {
 
 Repetitions repetitions(const ResultsFile& file, std::uint32_t point) {
   const std::vector<Column> columns = file.columns(point);
-  if (columns.empty()) return {};
-  const ObservableSeries series(file, point, columns.front().name);
-  Repetitions found{.text = series.copies()};
+  return columns.empty() ? Repetitions{} : repetitions(file, point, columns.front().name);
+}
+
+Repetitions repetitions(const ResultsFile& file, std::uint32_t point,
+                        const std::string& observable) {
+  const ObservableSeries series(file, point, observable);
+  Repetitions found{.text = series.copies(), .leave_one = series.realizations().size() == 1};
   if (found.text.empty()) return found;
   for (const RealizationSummary& summary : file.realizations()) {
-    if (summary.id.point == point &&
+    if (summary.id.point == point && is_usable(summary) &&
         !std::ranges::binary_search(series.realizations(), summary.id.realization)) {
       found.realizations.push_back(summary.id.realization);
     }
   }
   return found;
+}
+
+std::vector<EnsembleSeries> distinct_ensemble(const ResultsFile& file, std::uint32_t point,
+                                              const Repetitions& copies) {
+  std::vector<EnsembleSeries> all = file.ensemble(point);
+  if (copies.realizations.empty()) return all;
+  const std::uint32_t m = file.study().realizations;
+  const std::uint64_t n_rows = file.n_stored_rows(point);
+  for (EnsembleSeries& series : all) {
+    std::vector<double> values = file.block(point, series.label.name, {0, n_rows}, {0, m});
+    for (const std::uint32_t copy : copies.realizations)
+      for (std::size_t i = copy; i < values.size(); i += m) values[i] = not_a_number;
+    FoldedColumn folded = fold(values, m);
+    series.mean = std::move(folded.mean);
+    series.sigma = std::move(folded.sigma);
+    series.error = std::move(folded.error);
+    series.count = std::move(folded.count);
+  }
+  return all;
 }
 
 std::string ObservableSeries::held_back() const {

@@ -31,7 +31,16 @@ std::string copies_text(std::size_t n_copies, std::size_t n_distinct);
 struct Repetitions {
   std::vector<std::uint32_t> realizations{};  // ascending
   std::string text{};                         // copies_text()
+  bool leave_one = false;                     // true if all realizations are copies of one
 };
 Repetitions repetitions(const ResultsFile& file, std::uint32_t point);
+/// Those that repeat an earlier one by the series of this observable.
+Repetitions repetitions(const ResultsFile& file, std::uint32_t point,
+                        const std::string& observable);
+
+/// ResultsFile::ensemble() with one of realizations that repeat each other. Stored statistics count
+/// all.
+std::vector<EnsembleSeries> distinct_ensemble(const ResultsFile& file, std::uint32_t point,
+                                              const Repetitions& copies);
 
 }  // namespace jostle::inline study

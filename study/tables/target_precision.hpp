@@ -19,6 +19,7 @@ struct PrecisionStatus {
     double value = 0, at_most = 0;
   };
   Target farthest;
+  std::string copies = {};  // realizations that repeat another, which count once
   /// One row a sweep point and target: the largest spread over its taps.
   /// /analysis/target_precision.
   Table table;

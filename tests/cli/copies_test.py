@@ -77,6 +77,35 @@ class Copies(Case):
             self.assertEqual(results["structure/point_0000/layers/realizations"][:].tolist(), [3, 3])
             self.assertNotIn("note_copies", results["structure/point_0000/layers"].attrs)
 
+    def test_copies_count_once_in_the_table_of_taps_and_its_curve(self):
+        self.write(changed(CRYSTAL, protocol=[{"tap": {"half_sine": {}}, "count": 10}]))
+        ran = self.run_scene(environment=UNFOLDED).stdout
+        shown = self.jostle("info", "crystal.h5", environment=UNFOLDED).stdout
+        for text in (ran, shown):
+            self.assertIn(COPIES + ".", text)
+        # One packing: its height has no error.
+        row = next(line for line in ran.splitlines() if line.split()[:1] == ["10"])
+        self.assertNotIn("(", row)
+        catalogue = self.folder / "catalogue.json"
+        self.jostle("report", "crystal.h5", "--catalogue", "catalogue.json")
+        self.assertNotIn('"count": 3', catalogue.read_text())
+        with h5py.File(self.folder / "crystal.h5") as results:  # the file keeps what was stored of all
+            self.assertEqual(results["ensemble/point_0000/mean_height_count"][-1], 3)
+        self.write(SINGLE)
+        self.assertNotIn("repeat the series", self.run_scene(environment=UNFOLDED).stdout)
+
+    def test_copies_meet_no_target_precision_and_none_are_added(self):
+        target = {"observable": "mean_height", "standard_error": 0.01}
+        self.write(changed(CRYSTAL, protocol=[{"tap": {"half_sine": {}}, "count": 10}],
+                           until={"targets": [target], "at_most": 50}))
+        done = self.run_scene(environment=UNFOLDED)
+        self.assertIn("3 realizations: target precision NOT reached: standard_error of mean_height is not known "
+                      f"(fewer than two independent realizations), target at most 0.01; {COPIES}\n", done.stdout)
+        with h5py.File(self.folder / "crystal.h5") as results:
+            self.assertEqual(results["observables/point_0000/mean_height"].shape[1], 3)
+            notes = results["analysis/target_precision"].attrs
+            self.assertEqual((notes["note_verdict"], notes["note_copies"]), ("not met", COPIES))
+
     def test_a_random_start_is_not_warned_of(self):
         self.write(changed(CRYSTAL, start={"pour": "steepest_descent"},
                            container={"sides": "periodic", "width": 3}, spheres=20))

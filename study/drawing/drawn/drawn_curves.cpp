@@ -11,6 +11,7 @@
 #include "study/drawing/drawn/thinning.hpp"
 #include "study/running/stored_scene.hpp"
 #include "study/tables/points/half_widths.hpp"
+#include "study/tables/repeated_series.hpp"
 
 namespace jostle::inline study {
 namespace {
@@ -66,7 +67,8 @@ std::size_t curve_values(const ResultsFile& file, std::uint32_t point, const Cur
 DrawnCurve drawn_curve(const ResultsFile& file, std::uint32_t point, const CurveGrid& grid) {
   DrawnCurve curve{point, grid.taps(file.n_stored_rows(point)), {}};
   const std::size_t n_observables = file.study().points[point].observables.size();
-  const std::vector<EnsembleSeries> ensemble = file.ensemble(point);
+  const std::vector<EnsembleSeries> ensemble =
+      distinct_ensemble(file, point, repetitions(file, point));
   for (const EnsembleSeries& series : ensemble) {
     curve.taps = joined(std::move(curve.taps), extremes_of(series.mean));
   }

@@ -37,6 +37,7 @@ class PointNotes {
  public:
   /// An empty text adds nothing.
   void add(const std::string& label, const std::string& text);
+  bool is_empty() const { return texts_.empty(); }
   /// Appends "LABEL: TEXT; LABEL: TEXT", each once; nothing without a text.
   void note(const std::string& name, Table& table) const;
 
