@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "fitting/binned_curve.hpp"
+#include "fitting/given_errors.hpp"
 #include "fitting/intervals/derived_estimates.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/intervals/fit_errors.hpp"
@@ -71,7 +72,7 @@ class Fitter {
 
 Fitter::Fitter(const Model& model, const Curve& curve, const FitOptions& options)
     : model_(model), options_(options) {
-  const bool logarithmic = model.residual_scale() == ResidualScale::logarithmic;
+  const bool logarithmic = is_fitted_in_logarithms(model, curve);
   curve_ = with_pooled_errors(curve, logarithmic);
   searched_ = logarithmic ? curve_ : binned(curve_);
   for (const Parameter& parameter : model.parameters()) {
@@ -171,7 +172,7 @@ DependentErrors Fitter::describe_fit(Fit& fit) const {
   fit.model = model_.name();
   fit.formula = model_.formula();
   fit.source = model_.source();
-  fit.logarithmic = model_.residual_scale() == ResidualScale::logarithmic;
+  fit.logarithmic = is_fitted_in_logarithms(model_, curve_);
   fit.n_points = curve_.t.size();
   fit.n_free = n_free();
   fit.dof = fit.n_points - fit.n_free;
@@ -224,7 +225,7 @@ bool Fitter::find_intervals(const DependentErrors& errors, Fit& fit) {
   ProfileProblem problem{model_, searched_,       values_,
                          free_,  best_.cost,      fit.sigma_given ? 1 : fit.reduced_chi2,
                          {0, 0}, options_.solver, errors.level_weight};
-  const bool differ_in_shape = realizations_differ_in_shape(errors, fit);
+  fit.has_student_intervals = realizations_differ_in_shape(errors, fit);
   Eigen::Index variable = 0;
   for (std::size_t j = 0; j < free_.size(); ++j) {
     if (!free_[j]) continue;
@@ -252,7 +253,7 @@ bool Fitter::find_intervals(const DependentErrors& errors, Fit& fit) {
     }
     estimate.intervals[0] = found.intervals[0];
     estimate.intervals[1] = found.intervals[1];
-    if (differ_in_shape) use_student_intervals(curve_, fit.error_dof, estimate);
+    if (fit.has_student_intervals) use_student_intervals(curve_, fit.error_dof, estimate);
   }
   return true;
 }
@@ -319,7 +320,7 @@ Fit Fitter::finish() {
           "The law meets every point exactly: without scatter there are no errors or intervals.");
     }
     if (any_fixed) remark_on_order(fit);
-    judge(curve_, fit);
+    judge(curve_, options_.t_unit, fit);
     const FittedCurveOf fitted{model_, curve_,     searched_,          values_,
                                free_,  best_.cost, has_intervals(fit), options_};
     add_combinations(fitted, fit);
@@ -353,7 +354,8 @@ ParameterValues Fit::values() const {
   return p;
 }
 
-std::variant<Fit, Refusal> fit(const Model& model, const Curve& curve, const FitOptions& options) {
+std::variant<Fit, Refusal> fit_as_given(const Model& model, const Curve& curve,
+                                        const FitOptions& options) {
   if (auto refusal = refuse_options(model, options)) return *refusal;
   // A search that crawls towards infinity leaves enough for what is fitted there instead.
   constexpr int share_of_search = 5;

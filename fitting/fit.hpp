@@ -27,6 +27,8 @@ struct FitOptions {
   /// True if a curve without realizations may have a memory, which is then found in its residuals.
   /// Not for points that are known to be independent.
   bool memory = true;
+  /// Unit of t in remarks, such as "taps"; empty: not known.
+  std::string t_unit = {};
   /// True if the law's limits are fitted too, and one reported where the law has reached it. Needs
   /// profiles.
   bool limits = true;
@@ -124,7 +126,10 @@ struct Fit {
 
   std::size_t n_points = 0, n_free = 0, dof = 0;
   std::size_t n_realizations = 0;  // whose scatter gives the errors; 0: the residuals do
-  double error_dof = 0;      // error dof of errors and intervals; infinite where errors are known
+  double error_dof = 0;  // error dof of errors and intervals; infinite where errors are known
+  /// True if realizations differ in shape: the intervals of all parameters, also restated and
+  /// combined ones, are Student's t instead of profiles.
+  bool has_student_intervals = false;
   std::size_t n_bins = 0;    // means that a long curve was fitted as; 0: its points
   bool sigma_given = false;  // by the curve, or by its realizations
   bool logarithmic = false;  // residuals are those of ln X

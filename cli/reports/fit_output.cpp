@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cli/tables/table_output.hpp"
 #include "cli/tables/text_table.hpp"
@@ -88,8 +89,10 @@ Json parameters_json(const Fit& fit, const std::optional<ResampledErrors>& resam
       const bool known = fit.estimates[j].has_value();
       entry["resampled_error"] = known ? number(resampled->errors[j]) : Json();
       if (!resampled->central.empty()) {
-        entry["bootstrap_68"] = interval_json(resampled->middle[j]);
-        entry["bootstrap_95"] = interval_json(resampled->central[j]);
+        const Interval open = {-std::numeric_limits<double>::infinity(),
+                               std::numeric_limits<double>::infinity()};
+        entry["bootstrap_68"] = interval_json(known ? resampled->middle[j] : open);
+        entry["bootstrap_95"] = interval_json(known ? resampled->central[j] : open);
       }
     }
     parameters[estimate.parameter.name] = entry;

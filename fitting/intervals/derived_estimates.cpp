@@ -71,9 +71,7 @@ Estimate estimate_in(const Rewritten& rewritten, std::size_t index, const Fitted
   if (found.better) return estimate;
   estimate.intervals[0] = found.intervals[0];
   estimate.intervals[1] = found.intervals[1];
-  if (realizations_differ_in_shape(errors, counts)) {
-    use_student_intervals(fitted.curve, fit.error_dof, estimate);
-  }
+  if (fit.has_student_intervals) use_student_intervals(fitted.curve, fit.error_dof, estimate);
   return estimate;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 
 #include "fitting/fit.hpp"
 
@@ -23,10 +24,10 @@ void fill_statistics(const Curve& curve, const Eigen::VectorXd& weighted, Fit& f
 /// Fills error_factor from effective_size.
 void count_effective_points(Fit& fit);
 
-/// Classifies every estimate by its 95 % interval. Adds remarks on the source of errors, on
-/// parameters that can compensate each other, on few points that dominate, on chi2 far from 1 and
-/// on correlated residuals.
-void judge(const Curve& curve, Fit& fit);
+/// `t_unit`: unit of t in remarks, or empty. Classifies every estimate by its 95 % interval. Adds
+/// remarks on the source of errors, on parameters that can compensate each other, on few points
+/// that dominate, on chi2 far from 1 and on correlated residuals.
+void judge(const Curve& curve, const std::string& t_unit, Fit& fit);
 
 /// True if the residuals change sign significantly less often than independent residuals would.
 bool has_correlated_residuals(const Fit& fit);

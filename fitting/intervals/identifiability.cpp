@@ -150,7 +150,7 @@ void remark_on_loose(Fit& fit) {
   }
 }
 
-void remark_on_memory(const Curve& curve, Fit& fit) {
+void remark_on_memory(const Curve& curve, const std::string& t_unit, Fit& fit) {
   if (!(fit.memory.time > 0)) return;
   std::ostringstream text;
   text.precision(3);
@@ -158,7 +158,7 @@ void remark_on_memory(const Curve& curve, Fit& fit) {
   if (fit.memory.time > span(curve.t)) {
     text << "the whole curve";
   } else {
-    text << "about " << fit.memory.time << " in t";
+    text << "about " << fit.memory.time << ' ' << (t_unit.empty() ? "units of t" : t_unit);
   }
   text << ". Its " << fit.n_points << " points count as " << fit.effective_size
        << " independent points";
@@ -287,11 +287,11 @@ bool has_correlated_residuals(const Fit& fit) {
   return fit.reason != EndReason::exact && fit.runs.z < 0 && fit.runs.p < runs_level;
 }
 
-void judge(const Curve& curve, Fit& fit) {
+void judge(const Curve& curve, const std::string& t_unit, Fit& fit) {
   open_absurd_intervals(curve, fit, fit.estimates);
   take_errors_of_intervals(fit, fit.estimates);
   judge_estimates(curve, fit.estimates);
-  remark_on_memory(curve, fit);
+  remark_on_memory(curve, t_unit, fit);
   remark_on_loose(fit);
   remark_on_weights(fit);
   remark_on_chi2(fit);

@@ -65,6 +65,11 @@ std::vector<ParameterValues> Model::starts(const Curve& curve, std::span<const d
   return best_of_grid(*this, sample, fixed, {.axes = candidates(sample)}, n);
 }
 
+bool is_fitted_in_logarithms(const Model& model, const Curve& curve) {
+  return model.residual_scale() == ResidualScale::logarithmic &&
+         (curve.sigma.empty() || curve.n_realizations > 0);
+}
+
 std::vector<double> geometric(double first, double last, std::size_t n) {
   std::vector<double> values(n);
   for (std::size_t i = 0; i < n; ++i) {

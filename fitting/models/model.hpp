@@ -32,7 +32,8 @@ struct Combination {
   int power = 1;
 };
 
-/// True if residuals are differences of X, or of ln X with sigma / X for errors.
+/// Residuals are differences of X, or of ln X. A curve with given errors of X alone is fitted in X
+/// by every law: ln X has no error that is independent of its noise.
 enum class ResidualScale { linear, logarithmic };
 
 /// A starting point, or candidates for the nonlinear parameters: [n_parameters] values.
@@ -93,6 +94,9 @@ class Model {
   /// The curve with its parameters in standard order (as tau1 <= tau2).
   virtual ParameterValues canonical(const ParameterValues& p) const { return p; }
 };
+
+/// Returns true if the law is fitted to the curve in ln X: without errors, or with realizations.
+bool is_fitted_in_logarithms(const Model& model, const Curve& curve);
 
 /// `n` values from first to last in geometric progression. Requires 0 < first, 0 < last, n >= 2.
 std::vector<double> geometric(double first, double last, std::size_t n);

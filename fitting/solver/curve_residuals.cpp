@@ -92,7 +92,7 @@ CurveResiduals::CurveResiduals(const Model& model, const Curve& curve, Parameter
       weight_(curve.x.size(), 1.0),
       level_weight_(level_weight),
       unit_(unit_of(curve.x)),
-      logarithmic_(model.residual_scale() == ResidualScale::logarithmic) {
+      logarithmic_(is_fitted_in_logarithms(model, curve)) {
   const double of_t = unit_of(curve.t);
   for (std::size_t j = 0; j < free.size(); ++j) {
     const Parameter& parameter = model.parameters()[j];

@@ -68,10 +68,11 @@ FitOutcome fit_model(const Model& model, const Curve& curve, const FitManner& ma
   FitOptions options;
   options.fixed = manner.fixed;
   options.memory = manner.memory;
+  options.t_unit = manner.t_unit;
   FitOutcome outcome{model.name(), fit(model, curve, options), {}};
   const auto* found = std::get_if<Fit>(&outcome.result);
   if (!found || curve.n_realizations < 2 || !manner.resampled) return outcome;
-  const bool logarithmic = model.residual_scale() == ResidualScale::logarithmic;
+  const bool logarithmic = is_fitted_in_logarithms(model, curve);
   const Curve weighted = curve.present.empty() ? curve : with_pooled_errors(curve, logarithmic);
   const RealizationCurves curves{curve.t, weighted.sigma, curve.values,
                                  static_cast<std::uint32_t>(curve.n_realizations)};
@@ -287,7 +288,9 @@ std::string refusal_of_all(const FittedCurve& fitted) {
 FittedCurve fit_curve(const std::vector<std::unique_ptr<Model>>& models, FitSource source,
                       const FitManner& manner) {
   FittedCurve fitted{std::move(source), {}};
-  fitted.outcomes = fit_models(models, fitted.source.curve, manner);
+  FitManner with_units = manner;
+  with_units.t_unit = fitted.source.units.t;
+  fitted.outcomes = fit_models(models, fitted.source.curve, with_units);
   std::vector<FittedLaw> laws;
   for (std::size_t i = 0; i < models.size(); ++i) {
     if (const auto* found = std::get_if<Fit>(&fitted.outcomes[i].result)) {

@@ -24,6 +24,7 @@ struct FitManner {
   std::map<std::string, double> fixed = {};  // parameters that keep a value
   bool memory =
       true;  // memory of a single curve, sought in its residuals; not for independent points
+  std::string t_unit = {};  // unit of t in remarks; fit_curve() takes that of its source
   bool resampled = false;
   ResamplingOptions resampling = {};
 };

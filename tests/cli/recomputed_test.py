@@ -245,7 +245,7 @@ class Recomputed(Case):
         lag = np.round(1.5 ** np.arange(1, 20))
 
         def power_law(t, a, s):
-            return np.log(a) - s * np.log(t)
+            return a * t**-s
 
         def ageing(t, a, b, tau):
             return a * (1 - 1 / (1 + b * np.log1p(t / tau)))
@@ -257,13 +257,10 @@ class Recomputed(Case):
                                          (pore_tail, v, (5000, 0.1), 0.03)):
             with self.subTest(law=law.__name__):
                 curve = law(at, *truth)
-                logarithmic = law is power_law
-                curve = np.exp(curve) if logarithmic else curve
                 x = curve * (1 + relative * noise.standard_normal(len(at)))
                 sigma = relative * curve
                 fit = self.fitted(law.__name__, at, x, sigma)
-                p, errors, chi2 = least_squares(law, at, np.log(x) if logarithmic else x,
-                                                sigma / x if logarithmic else sigma, truth)
+                p, errors, chi2 = least_squares(law, at, x, sigma, truth)
                 found = [fit["parameters"][name] for name in fit["order"]]
                 np.testing.assert_allclose([one["value"] for one in found], p, rtol=1e-7)
                 np.testing.assert_allclose([one["standard_error"] for one in found], errors, rtol=1e-6)

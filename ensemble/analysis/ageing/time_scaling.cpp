@@ -252,7 +252,8 @@ AgeingExponent ageing_exponent(const LogCurves& all,
   AgeingExponent found{power.best(), error.error,  ends.low[0], ends.high[0],
                        ends.low[1],  ends.high[1], "",          collapse};
   found.verdict = words(found) + "; " + collapse.verdict;
-  if (!std::isfinite(found.low_68) || !std::isfinite(found.high_68))
+  const bool has_limit = std::isfinite(found.low_95) || std::isfinite(found.high_95);
+  if (!has_limit || !std::isfinite(found.low_68) || !std::isfinite(found.high_68))
     found.mu = found.error = not_a_number;
   return found;
 }

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdio>
 
 #include "fitting/fit.hpp"
 #include "fitting/models/models.hpp"
@@ -179,6 +181,141 @@ TEST_CASE("Errors given too small: verdict and remark report how much longer the
     CHECK(found.scatter_ratio == 1);
     CHECK(verdict({found}, {}).find("taken as exact") == std::string::npos);
   }
+}
+
+namespace {
+
+// A power law with noise that is a share of X, AR(1) from point to point.
+struct NoisyPowerLaw {
+  int n;
+  double noise, rho = 0;  // noise relative to X
+
+  // follows: power of the measured X that the errors given are computed with; 0: of the true X.
+  Curve curve(double follows, int number) const {
+    Noise next(static_cast<std::uint64_t>(number));
+    Curve made{.t = {}, .x = {}, .sigma = {}};
+    double state = next();
+    for (int i = 1; i <= n; ++i) {
+      const double t = rho > 0 ? i : 1e-3 * std::pow(500.0, (i - 1.0) / (n - 1));
+      const double truth = PowerLaw().value(t, parameters.data());
+      made.t.push_back(t);
+      made.x.push_back(truth * (1 + noise * state));
+      made.sigma.push_back(noise * truth * std::pow(made.x.back() / truth, follows));
+      state = rho * state + std::sqrt(1 - rho * rho) * next();
+    }
+    return made;
+  }
+
+  ParameterValues parameters = {1e-7, 1.3};
+};
+
+struct CurvesOfOneKind {
+  Coverage amplitude, slope;
+  int curves = 0, without_errors = 0;
+};
+
+CurvesOfOneKind coverage_of(const NoisyPowerLaw& law, double follows, int curves) {
+  CurvesOfOneKind found{.amplitude = {}, .slope = {}, .curves = curves};
+  for (int number = 1; number <= curves; ++number) {
+    const auto outcome = fit(PowerLaw(), law.curve(follows, number));
+    const Fit& fitted = std::get<Fit>(outcome);
+    CHECK(!fitted.logarithmic);
+    if (fitted.estimates[0].identifiability == Identifiability::not_examined) {
+      ++found.without_errors;
+      continue;
+    }
+    found.amplitude.add(fitted.estimates[0].intervals, law.parameters[0]);
+    found.slope.add(fitted.estimates[1].intervals, law.parameters[1]);
+  }
+  const auto share = [](const Coverage& coverage, int level) {
+    return 100.0 * coverage.covered[level] / std::max(coverage.curves, 1);
+  };
+  std::printf(
+      "power_law  n %3d  noise %5.3f  rho %3.1f  errors as X^%3.1f  no errors %3d of %d  A %5.1f "
+      "%5.1f  s %5.1f %5.1f\n",
+      law.n, law.noise, law.rho, follows, found.without_errors, curves, share(found.amplitude, 0),
+      share(found.amplitude, 1), share(found.slope, 0), share(found.slope, 1));
+  return found;
+}
+
+void check_white_noise(const NoisyPowerLaw& law, int curves) {
+  for (const double follows : {0.0, 0.5, 1.0}) {
+    INFO(law.n << " points, noise " << law.noise << ", errors as X^" << follows);
+    const CurvesOfOneKind found = coverage_of(law, follows, curves);
+    CHECK(found.without_errors <= 0.05 * curves);
+    found.amplitude.check();
+    found.slope.check();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Errors of a power law hold their level, whatever X they are computed from") {
+  for (const int n : {30, 300}) {
+    for (const double noise : {0.005, 0.2}) check_white_noise({.n = n, .noise = noise}, 100);
+  }
+}
+
+TEST_CASE("Errors of a power law: white noise and AR(1)", "[nightly]") {
+  for (const int n : {30, 60, 100, 300}) {
+    for (const double noise : {0.005, 0.02, 0.05, 0.2}) {
+      check_white_noise({.n = n, .noise = noise}, 400);
+      // Shorter curves, and those of rho 0.9 that have errors at all, have too short intervals.
+      for (const double rho : {0.5, 0.9}) {
+        for (const double follows : {0.0, 1.0}) {
+          const CurvesOfOneKind found =
+              coverage_of({.n = n, .noise = noise, .rho = rho}, follows, 400);
+          if (rho > 0.5 || n < 100) continue;
+          CHECK(found.without_errors <= 0.05 * found.curves);
+          found.amplitude.check();
+          found.slope.check();
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("Roots of counts and shares of X are taken at the law, other errors as given") {
+  const ParameterValues truth = {5000, 0.1};
+  std::vector<double> v;
+  for (int i = 0; i < 60; ++i) v.push_back(0.005 * i);
+  for (const double follows : {0.0, 0.5, 1.0}) {
+    INFO("errors as X^" << follows);
+    int followed = 0;
+    Coverage of_v0;
+    for (int number = 1; number <= 100; ++number) {
+      Noise noise(static_cast<std::uint64_t>(number));
+      Curve curve{.t = v, .x = {}, .sigma = {}};
+      for (const double t : v) {
+        const double x = PoreTail().value(t, truth.data());
+        curve.x.push_back(x + std::sqrt(x) * noise());
+        curve.sigma.push_back(std::sqrt(x) * std::pow(curve.x.back() / x, follows));
+      }
+      const auto outcome = fit(PoreTail(), curve);
+      const Fit& fitted = std::get<Fit>(outcome);
+      for (const std::string& remark : fitted.remarks)
+        followed += remark.find("The errors given follow the scatter of X") == 0;
+      if (fitted.estimates[1].identifiability == Identifiability::not_examined) continue;
+      of_v0.add(fitted.estimates[1].intervals, truth[1]);
+    }
+    CHECK(followed == (follows > 0 ? 100 : 0));
+    CHECK(of_v0.curves >= 95);
+    of_v0.check();
+  }
+  // Errors of points that were measured differently, by chance and not by their X.
+  int followed = 0;
+  for (int number = 1; number <= 200; ++number) {
+    Noise noise(static_cast<std::uint64_t>(number));
+    Curve curve{.t = v, .x = {}, .sigma = {}};
+    for (const double t : v) {
+      curve.sigma.push_back(20 * std::exp(0.5 * noise()));
+      curve.x.push_back(PoreTail().value(t, truth.data()) + curve.sigma.back() * noise());
+    }
+    const auto outcome = fit(PoreTail(), curve, {.profiles = false});
+    for (const std::string& remark : std::get<Fit>(outcome).remarks)
+      followed += remark.find("The errors given follow the scatter of X") == 0;
+  }
+  CHECK(followed <= 2);
 }
 
 }  // namespace jostle

@@ -158,4 +158,33 @@ TEST_CASE("Realizations that differ in level or shape: every number of realizati
   }
 }
 
+TEST_CASE("Restated parameters have intervals of the method of the fit") {
+  // Realizations whose dX, B and tau differ by 60 %: B of eq. 4 is B of eq. 3 times Z_0/Z_inf.
+  int different = 0;
+  for (const std::size_t n_realizations : {3, 4}) {
+    for (int number = 1; number <= 20; ++number) {
+      Noise noise(static_cast<std::uint64_t>(number));
+      std::vector<ParameterValues> realizations(n_realizations, laws()[1].centre);
+      for (ParameterValues& p : realizations)
+        for (std::size_t j = 1; j < p.size(); ++j) p[j] *= std::exp(0.6 * noise());
+      std::vector<double> values;
+      for (const double t : times(laws()[1])) {
+        for (const ParameterValues& p : realizations)
+          values.push_back(InverseLog().value(t, p.data()) + laws()[1].noise * noise());
+      }
+      const auto outcome =
+          fit(InverseLog(), mean_curve(times(laws()[1]), std::move(values), n_realizations));
+      const Fit& fitted = std::get<Fit>(outcome);
+      if (!fitted.has_student_intervals || !fitted.restated) continue;
+      ++different;
+      const Estimate &b = fitted.estimates[2], &restated = fitted.restated->estimates[2];
+      INFO(n_realizations << " realizations, ensemble " << number << ": " << b.statement << "; "
+                          << restated.statement);
+      REQUIRE(restated.parameter.name == "B");
+      CHECK(restated.intervals[1].closed() == b.intervals[1].closed());
+    }
+  }
+  CHECK(different >= 10);
+}
+
 }  // namespace jostle
