@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "fitting/binned_curve.hpp"
-#include "fitting/given_errors.hpp"
 #include "fitting/intervals/derived_estimates.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/intervals/fit_errors.hpp"

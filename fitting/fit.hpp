@@ -182,4 +182,8 @@ struct Refusal {
 std::variant<Fit, Refusal> fit(const Model& model, const Curve& curve,
                                const FitOptions& options = {});
 
+/// fit() with the errors of a curve as they are given, also if they were computed from X.
+std::variant<Fit, Refusal> fit_as_given(const Model& model, const Curve& curve,
+                                        const FitOptions& options);
+
 }  // namespace jostle::inline fitting

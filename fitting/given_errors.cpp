@@ -1,13 +1,15 @@
-#include "fitting/given_errors.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <sstream>
 
+#include "fitting/fit.hpp"
 #include "fitting/intervals/distributions.hpp"
 #include "fitting/solver/decompositions.hpp"
 
+// Errors that a user gives with a curve, and that were computed from the measured X: as the root of
+// a count, or as a share of X. A low X then has a small error and a large weight, which biases the
+// fit (Neyman's chi2; Pearson's takes the errors at the law).
 namespace jostle::inline fitting {
 
 namespace {
@@ -19,7 +21,7 @@ constexpr Eigen::Index smooth_columns = 4;  // quadratic in the rank of t, and l
 constexpr double least_exponent = 1e-3;
 constexpr double least_variation = 1e-9;  // variation of ln sigma that is more than rounding
 constexpr int most_rounds = 10;
-constexpr double settled = 1e-9;  // change of the law, relative to X
+constexpr double least_change = 1e-9;  // change of the law, relative to X
 
 // ln sigma, ln of X over the law, and ln of the law, from one point to the next in t: [n - 1, 3].
 // Differences leave little of errors that vary smoothly, and of a memory of the noise. Points where
@@ -41,6 +43,29 @@ Eigen::MatrixXd steps_of_logarithms(const Curve& curve, const std::vector<double
   }
   const Eigen::Index steps = std::max<Eigen::Index>(n - 1, 0);
   return logarithms.bottomRows(steps) - logarithms.topRows(steps);
+}
+
+// The power of the measured X that given errors follow from point to point, in [0, 1]: 1/2 for the
+// roots of counts, 1 for shares of X. 0 where they do not follow X: constant errors, errors that
+// vary along the curve alone, or whose regression on the residuals of ln X is not significant.
+// fitted: [n_points], a law close to the curve.
+double noise_exponent(const Curve& curve, const std::vector<double>& fitted) {
+  const Eigen::MatrixXd steps = steps_of_logarithms(curve, fitted);
+  const Eigen::Index n = steps.rows(), dof = n - smooth_columns - 1;
+  if (dof < 1) return 0;
+  Eigen::MatrixXd basis(n, smooth_columns);
+  const Eigen::VectorXd place = Eigen::VectorXd::LinSpaced(n, -1, 1);
+  basis << Eigen::VectorXd::Ones(n), place, place.cwiseAbs2(), steps.col(2);
+  const Eigen::MatrixXd columns = steps.leftCols(2);
+  const Eigen::MatrixXd left = columns - basis * least_squares_of_columns(basis, columns);
+  const double squares = left.col(1).squaredNorm(), product = left.col(0).dot(left.col(1));
+  if (!(left.col(0).norm() > least_variation) || !(squares > 0)) return 0;
+  const double slope = product / squares;
+  const double missed = (left.col(0) - slope * left.col(1)).squaredNorm();
+  const double error = std::sqrt(missed / static_cast<double>(dof) / squares);
+  if (!(slope > least_exponent)) return 0;
+  if (error > 0 && student_tails(slope / error, static_cast<double>(dof)) > significance) return 0;
+  return std::min(slope, 1.0);
 }
 
 Curve with_errors_at(const Curve& source, const std::vector<double>& fitted, double exponent) {
@@ -78,7 +103,7 @@ Curve with_errors_at_law(const Model& model, const Curve& source, const FitOptio
     for (std::size_t i = 0; i < previous.size(); ++i) {
       change = std::max(change, std::abs((found->fitted[i] - previous[i]) / source.x[i]));
     }
-    if (!(change > settled)) break;
+    if (!(change > least_change)) break;
     previous = found->fitted;
     curve = with_errors_at(source, previous, exponent);
     quick.start = found->values();
@@ -97,25 +122,6 @@ void remark_on_given_errors(double exponent, Fit& fit) {
 }
 
 }  // namespace
-
-double noise_exponent(const Curve& curve, const std::vector<double>& fitted) {
-  const Eigen::MatrixXd steps = steps_of_logarithms(curve, fitted);
-  const Eigen::Index n = steps.rows(), dof = n - smooth_columns - 1;
-  if (dof < 1) return 0;
-  Eigen::MatrixXd basis(n, smooth_columns);
-  const Eigen::VectorXd place = Eigen::VectorXd::LinSpaced(n, -1, 1);
-  basis << Eigen::VectorXd::Ones(n), place, place.cwiseAbs2(), steps.col(2);
-  const Eigen::MatrixXd columns = steps.leftCols(2);
-  const Eigen::MatrixXd left = columns - basis * least_squares_of_columns(basis, columns);
-  const double squares = left.col(1).squaredNorm(), product = left.col(0).dot(left.col(1));
-  if (!(left.col(0).norm() > least_variation) || !(squares > 0)) return 0;
-  const double slope = product / squares;
-  const double missed = (left.col(0) - slope * left.col(1)).squaredNorm();
-  const double error = std::sqrt(missed / static_cast<double>(dof) / squares);
-  if (!(slope > least_exponent)) return 0;
-  if (error > 0 && student_tails(slope / error, static_cast<double>(dof)) > significance) return 0;
-  return std::min(slope, 1.0);
-}
 
 std::variant<Fit, Refusal> fit(const Model& model, const Curve& curve, const FitOptions& options) {
   const bool outermost = options.solver.budget == nullptr;

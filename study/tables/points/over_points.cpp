@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "config/json/json_text.hpp"
+#include "ensemble/statistics/finite_text.hpp"
 #include "study/bad_input.hpp"
 
 namespace jostle::inline study {
@@ -42,6 +44,35 @@ SharedTaps shared_taps(std::span<const ReachedTaps> points) {
   for (std::size_t i = 0; i < points.size(); ++i)
     found.rows.push_back(found.reasons[i].empty() ? shared.at(points[i].planned) : 0);
   return found;
+}
+
+namespace {
+
+const char* advice_on(const std::string& quantity) {
+  if (quantity == "value") return "Run realizations that reach their last taps";
+  if (quantity.starts_with("steady/"))
+    return "Average over more taps, tap longer, or sweep the mean of the last taps "
+           "(quantity value)";
+  return "Tap longer or run more realizations, or sweep another quantity";
+}
+
+}  // namespace
+
+std::string without_any_value(const std::string& quantity, const std::string& observable,
+                              const std::string& axis,
+                              const std::vector<std::pair<double, std::string>>& reasons) {
+  std::map<std::string, std::set<double>> places;
+  for (const auto& [place, reason] : reasons)
+    places[reason.empty() ? "it is not defined for these taps" : reason].insert(place);
+  std::vector<std::string> texts;
+  for (const auto& [reason, all] : places) {
+    std::vector<std::string> numbers;
+    for (const double place : all) numbers.push_back(finite_text("{:.4g}", place));
+    texts.push_back(fmt::format("at {} = {}: {}", axis, joined(numbers, ", "), reason));
+  }
+  return fmt::format("no sweep point has a value of {}{}; {}. {}",
+                     quantity == "value" ? "" : quantity + " of ", observable, joined(texts, "; "),
+                     advice_on(quantity));
 }
 
 void PointNotes::add(const std::string& label, const std::string& text) {

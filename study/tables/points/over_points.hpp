@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/scene.hpp"
@@ -31,6 +32,12 @@ struct SharedTaps {
                                      // half of what another has; else empty
 };
 SharedTaps shared_taps(std::span<const ReachedTaps> points);
+
+/// Refusal of a curve over points of which none has a value: what was sought, the reason at each
+/// place of the axis ("" where it is not known), and advice.
+std::string without_any_value(const std::string& quantity, const std::string& observable,
+                              const std::string& axis,
+                              const std::vector<std::pair<double, std::string>>& reasons);
 
 /// Sentences about single sweep points, for one note of a table.
 class PointNotes {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "config/json/json_text.hpp"
 #include "config/sweep.hpp"
@@ -282,34 +282,13 @@ bool has_value(const Member& member) {
          std::ranges::any_of(member.realizations, [](double mean) { return std::isfinite(mean); });
 }
 
-/// Advice for a sweep without any value.
-const char* advice_on(const std::string& quantity) {
-  if (quantity == "value") return "Run realizations that reach their last taps";
-  if (quantity.starts_with("steady/"))
-    return "Average over more taps (--last), tap longer, or sweep the mean of the last taps "
-           "(quantity value)";
-  return "Tap longer or run more realizations, or sweep another quantity";
-}
-
-/// Describes what was looked for, where, and why there is none.
+/// The refusal of a sweep of which no point has a value.
 std::string why_no_value(std::span<const Member> members,
                          const AnalysisRequest<SweepSettings>& request) {
-  std::map<std::string, std::set<double>> places;
-  for (const Member& member : members) {
-    places[member.no_value.empty() ? "it is not defined for these taps" : member.no_value].insert(
-        member.x);
-  }
-  std::vector<std::string> reasons;
-  for (const auto& [reason, all] : places) {
-    std::vector<std::string> texts;
-    for (const double x : all) texts.push_back(finite_text("{:.4g}", x));
-    reasons.push_back(
-        fmt::format("at {} = {}: {}", members.front().swept.name, joined(texts, ", "), reason));
-  }
-  const std::string& quantity = request.settings.quantity;
-  return fmt::format("no sweep point has a value of {}{}; {}. {}",
-                     quantity == "value" ? "" : quantity + " of ", request.observable,
-                     joined(reasons, "; "), advice_on(quantity));
+  std::vector<std::pair<double, std::string>> reasons;
+  for (const Member& member : members) reasons.emplace_back(member.x, member.no_value);
+  return without_any_value(request.settings.quantity, request.observable,
+                           members.front().swept.name, reasons);
 }
 
 /// A file with what is read of it once for all sweeps.
