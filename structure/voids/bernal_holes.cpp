@@ -44,14 +44,6 @@ class HoleFiller {
       if (!taken_[t]) take(HoleKind::unclassified, corners_of(t), {t});
   }
 
-  // Tetrahedra that belong to no hole yet.
-  std::vector<DelaunayTetrahedron> left() const {
-    std::vector<DelaunayTetrahedron> found;
-    for (std::uint32_t t = 0; t < tetrahedra_.size(); ++t)
-      if (!taken_[t]) found.push_back(tetrahedra_[t]);
-    return found;
-  }
-
   std::vector<BernalHole> holes() && { return std::move(holes_); }
 
  private:
@@ -139,12 +131,13 @@ std::vector<BernalHole> bernal_holes(const Packing& packing, const VoronoiCells&
                                      const BondLengths& lengths) {
   assert(1 < lengths.first && lengths.first <= lengths.last && lengths.step > 0);
   const auto tetrahedra = delaunay_tetrahedra(packing, cells);
-  const auto edges = edges_of(packing, tetrahedra);
   HoleFiller filler(packing, tetrahedra);
   const int steps = static_cast<int>((lengths.last - lengths.first) / lengths.step + 1e-9);
+  const double longest = lengths.first + steps * lengths.step;
+  const auto edges = edges_below(packing, longest);
   for (int step = 0; step <= steps; ++step) {
     const BondGraph bonds(packing.centres.size(), edges, lengths.first + step * lengths.step);
-    for (const HoleCandidate& candidate : hole_candidates(packing, filler.left(), bonds))
+    for (const HoleCandidate& candidate : hole_candidates(packing, bonds))
       filler.take_if_filled(candidate);
     filler.take_tetrahedra(bonds);
   }

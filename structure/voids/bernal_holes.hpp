@@ -67,15 +67,16 @@ struct BondLengths {
 /// The holes of a packing, every Delaunay tetrahedron in exactly one. Our rule, as Bernal took his
 /// holes out of models by hand: a hole is a set of spheres that are bonded to one another exactly
 /// as the corners of a canonical one, so that all its bonds are shorter than all its diagonals, and
-/// whose tetrahedra, none of them of another hole, fill it without a gap. At every bond length, the
-/// shortest first, holes are taken in the order antiprism, dodecahedron, prism, half-octahedron,
-/// tetrahedron, among equals the one whose longest bond falls farthest below its shortest diagonal
-/// first. Regular holes therefore come before distorted ones, and large ones before those they
-/// could be cut into. Volume that no bond length explains is unclassified: with the default lengths
-/// 23 % of the volume of a bed poured by steepest descent, 11 % of one that Monte Carlo moves
-/// fitted between walls. How the rest is shared out depends on them: compare packings by one and
-/// the same rule. Requires 1 < first <= last and step > 0. Throws std::invalid_argument for
-/// periodic widths under 4 diameters.
+/// whose tetrahedra, none of them of another hole, fill it without a gap, in whatever way they cut
+/// it. At every bond length, the shortest first, holes are taken in the order antiprism,
+/// dodecahedron, prism, half-octahedron, tetrahedron, among equals the one whose longest bond falls
+/// farthest below its shortest diagonal first, at a tie the one with the lowest spheres. Regular
+/// holes therefore come before distorted ones, and large ones before those they could be cut into.
+/// Volume that no bond length explains is unclassified: with the default lengths 23 % of the volume
+/// of a bed poured by steepest descent, 11 % of one that Monte Carlo moves fitted between walls.
+/// How the rest is shared out depends on them: compare packings by one and the same rule. Requires
+/// 1 < first <= last and step > 0. Throws std::invalid_argument for periodic widths under 4
+/// diameters.
 std::vector<BernalHole> bernal_holes(const Packing& packing, const BondLengths& lengths = {});
 
 /// Like the function of a packing, with existing cells.

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "engine/bed/boundary.hpp"
+#include "structure/order/neighbours.hpp"
 
 namespace jostle::inline structure {
 namespace {
@@ -20,94 +21,67 @@ double distance_squared(const Packing& packing, std::uint32_t i, std::uint32_t j
       separation(Boundary(packing.container), packing.centres[i], packing.centres[j]));
 }
 
-// Equal for a square from all corners and in both directions.
-Square canonical(Square square) {
-  std::ranges::rotate(square, std::ranges::min_element(square));
-  if (square[3] < square[1]) std::swap(square[1], square[3]);
-  return square;
-}
-
-// Its edges that are bonds: [0][1] joins its first two spheres.
-using BondsOf = std::array<std::array<bool, 4>, 4>;
-
-BondsOf bonds_of(const DelaunayTetrahedron& tetrahedron, const BondGraph& bonds) {
-  BondsOf bonded{};
-  for (std::size_t k = 0; k < 4; ++k)
-    for (std::size_t l = k + 1; l < 4; ++l)
-      bonded[k][l] = bonded[l][k] = bonds.bonded(tetrahedron.spheres[k], tetrahedron.spheres[l]);
-  return bonded;
-}
-
-// Rings of four bonds around Delaunay edges longer than a bond, their other diagonal longer too.
+// Rings of four bonds whose diagonals are no bonds.
 class Squares {
  public:
-  explicit Squares(const BondGraph& bonds) : bonds_(bonds) {}
+  explicit Squares(const BondGraph& bonds) : bonds_(bonds), n_paths_(bonds.size(), 0) {}
 
-  void add_edges(const std::array<std::uint32_t, 4>& spheres, const BondsOf& bonded) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t l = k + 1; l < 4; ++l) {
-        if (bonded[k][l]) continue;
-        for (std::size_t x = 0; x < 4; ++x)
-          if (bonded[x][k] && bonded[x][l]) thirds_.push_back({spheres[k], spheres[l], spheres[x]});
+  // Calls visit(square) for every square once, its least sphere first.
+  template <class Visit>
+  void visit_all(Visit&& visit) {
+    for (std::uint32_t a = 0; a < bonds_.size(); ++a) {
+      find_paths(a);
+      for (std::size_t i = 0; i < paths_.size(); ++i) {
+        const auto& [c, b] = paths_[i];
+        for (std::size_t j = i + 1; j < paths_.size() && paths_[j].end == c; ++j)
+          if (!bonds_.bonded(b, paths_[j].middle)) visit(Square{a, b, c, paths_[j].middle});
       }
     }
   }
 
-  // Each once.
-  std::vector<Square> found() && {
-    keep_one_of_each(thirds_);
-    std::vector<Square> all;
-    for (std::size_t i = 0; i < thirds_.size(); ++i) {
-      const auto& [a, c, x] = thirds_[i];
-      for (std::size_t j = i + 1; j < thirds_.size() && thirds_[j].a == a && thirds_[j].c == c; ++j)
-        if (!bonds_.bonded(x, thirds_[j].x)) all.push_back(canonical({a, x, c, thirds_[j].x}));
-    }
-    keep_one_of_each(all);
-    return all;
-  }
-
  private:
-  struct Third {
-    std::uint32_t a, c, x;  // x is a corner of a tetrahedron with the edge ac
-    auto operator<=>(const Third&) const = default;
+  struct Path {
+    std::uint32_t end, middle;
+    auto operator<=>(const Path&) const = default;
   };
-  template <class T>
-  static void keep_one_of_each(std::vector<T>& all) {
-    std::ranges::sort(all);
-    const auto repeated = std::ranges::unique(all);
-    all.erase(repeated.begin(), repeated.end());
+
+  // Paths of two bonds from a to greater spheres that are not bonded to it, by their ends. Leaves
+  // out ends that one path alone reaches.
+  void find_paths(std::uint32_t a) {
+    const auto visit_paths = [&](auto&& visit) {
+      for (const std::uint32_t middle : bonds_.bonded_to(a)) {
+        if (middle < a) continue;
+        for (const std::uint32_t end : bonds_.bonded_to(middle))
+          if (end > a) visit(end, middle);
+      }
+    };
+    paths_.clear();
+    visit_paths([&](std::uint32_t end, std::uint32_t) { ++n_paths_[end]; });
+    for (const std::uint32_t near : bonds_.bonded_to(a)) n_paths_[near] = 0;
+    visit_paths([&](std::uint32_t end, std::uint32_t middle) {
+      if (n_paths_[end] > 1) paths_.push_back({end, middle});
+    });
+    visit_paths([&](std::uint32_t end, std::uint32_t) { n_paths_[end] = 0; });
+    std::ranges::sort(paths_);
   }
 
   const BondGraph& bonds_;
-  std::vector<Third> thirds_;
+  std::vector<Path> paths_;
+  std::vector<std::uint32_t> n_paths_;  // to each sphere
 };
 
 class Candidates {
  public:
   Candidates(const Packing& packing, const BondGraph& bonds) : packing_(packing), bonds_(bonds) {}
 
-  // Holes with a square.
+  // All holes but tetrahedra have a square: in a dodecahedron it is bent, the ring of the corners
+  // that have five bonds.
   void add_around(const Square& square) {
-    for (std::size_t k = 0; k < 4; ++k)
-      bonds_.bonded_to_both(square[k], square[(k + 1) % 4], common_[k]);
+    sort_neighbours(square);
     add_half_octahedra(square);
     add_prisms(square);
     add_antiprisms(square);
-  }
-
-  // A tetrahedron with two opposite long edges, whose ends are the middle of the dodecahedron: two
-  // tips over each long edge, bonded to one another.
-  void add_dodecahedra(const std::array<std::uint32_t, 4>& s, const BondsOf& bonded) {
-    constexpr std::size_t opposite_edges[3][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}};
-    for (const auto& [k, l, m, n] : opposite_edges) {
-      if (bonded[k][l] || bonded[m][n]) continue;
-      if (!bonded[k][m] || !bonded[k][n] || !bonded[l][m] || !bonded[l][n]) continue;
-      const std::uint32_t a = s[k], b = s[l], c = s[m], d = s[n];
-      const auto over_ab = tips(a, b, c, d), over_cd = tips(c, d, a, b);
-      for (const auto& [e, f] : over_ab)
-        for (const auto& [g, h] : over_cd)
-          add(HoleKind::tetragonal_dodecahedron, std::array{a, b, c, d, e, f, g, h}, 18);
-    }
+    add_dodecahedra(square);
   }
 
   // In the order in which holes are taken.
@@ -124,58 +98,75 @@ class Candidates {
   }
 
  private:
+  // Neighbours of two corners or more, by the corners to which they are bonded.
+  void sort_neighbours(const Square& q) {
+    of_all_.clear();
+    for (std::size_t k = 0; k < 4; ++k) {
+      of_edge_[k].clear();
+      of_three_[k].clear();
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      bonds_.bonded_to_both(q[k], q[(k + 1) % 4], common_);
+      for (const std::uint32_t sphere : common_) {
+        const bool next = bonds_.bonded(sphere, q[(k + 2) % 4]);
+        const bool previous = bonds_.bonded(sphere, q[(k + 3) % 4]);
+        if (!next && !previous) of_edge_[k].push_back(sphere);
+        if (next && !previous) of_three_[(k + 1) % 4].push_back(sphere);
+        if (next && previous && k == 0) of_all_.push_back(sphere);
+      }
+    }
+  }
+
   // A square, and a sphere bonded to all four.
   void add_half_octahedra(const Square& q) {
-    for (const std::uint32_t p : common_[0])
-      if (bonds_.bonded(p, q[2]) && bonds_.bonded(p, q[3]))
-        add(HoleKind::half_octahedron, std::array{q[0], q[1], q[2], q[3], p}, 8);
+    for (const std::uint32_t tip : of_all_)
+      add(HoleKind::half_octahedron, std::array{q[0], q[1], q[2], q[3], tip});
   }
 
   // Triangles on opposite edges of a square, their tips bonded.
   void add_prisms(const Square& q) {
     for (const std::size_t k : {0, 1}) {
-      for (const std::uint32_t tip : common_[k])
-        for (const std::uint32_t sphere : common_[k + 2])
-          if (bonds_.bonded(tip, sphere))
-            add(HoleKind::trigonal_prism, std::array{q[0], q[1], q[2], q[3], tip, sphere}, 9);
+      for (const std::uint32_t a : of_edge_[k])
+        for (const std::uint32_t b : of_edge_[k + 2])
+          if (bonds_.bonded(a, b))
+            add(HoleKind::trigonal_prism, std::array{q[0], q[1], q[2], q[3], a, b});
     }
   }
 
   // A second square, each corner of it bonded to the ends of an edge of the first.
   void add_antiprisms(const Square& q) {
-    for (const std::uint32_t a : common_[0]) {
-      for (const std::uint32_t b : common_[1]) {
+    for (const std::uint32_t a : of_edge_[0]) {
+      for (const std::uint32_t b : of_edge_[1]) {
         if (!bonds_.bonded(a, b)) continue;
-        for (const std::uint32_t c : common_[2]) {
-          if (!bonds_.bonded(b, c)) continue;
-          for (const std::uint32_t d : common_[3])
-            if (bonds_.bonded(c, d) && bonds_.bonded(d, a))
-              add(HoleKind::archimedean_antiprism, std::array{q[0], q[1], q[2], q[3], a, b, c, d},
-                  16);
+        for (const std::uint32_t c : of_edge_[2]) {
+          if (!bonds_.bonded(b, c) || bonds_.bonded(a, c)) continue;
+          for (const std::uint32_t d : of_edge_[3])
+            if (bonds_.bonded(c, d) && bonds_.bonded(d, a) && !bonds_.bonded(b, d))
+              add(HoleKind::archimedean_antiprism, std::array{q[0], q[1], q[2], q[3], a, b, c, d});
         }
       }
     }
   }
 
-  // Bonded pairs, one bonded to a, b and c, the other to a, b and d.
-  std::vector<std::array<std::uint32_t, 2>> tips(std::uint32_t a, std::uint32_t b, std::uint32_t c,
-                                                 std::uint32_t d) {
-    std::vector<std::array<std::uint32_t, 2>> pairs;
-    std::vector<std::uint32_t>& remaining = common_[0];
-    bonds_.bonded_to_both(a, b, remaining);
-    for (const std::uint32_t e : remaining)
-      for (const std::uint32_t f : remaining)
-        if (bonds_.bonded(e, c) && bonds_.bonded(f, d) && bonds_.bonded(e, f))
-          pairs.push_back({e, f});
-    return pairs;
+  // Over each three corners of the square a sphere, those over opposite corners bonded.
+  void add_dodecahedra(const Square& q) {
+    for (const std::uint32_t a : of_three_[0]) {
+      for (const std::uint32_t c : of_three_[2]) {
+        if (!bonds_.bonded(a, c)) continue;
+        for (const std::uint32_t b : of_three_[1]) {
+          if (bonds_.bonded(a, b) || bonds_.bonded(b, c)) continue;
+          for (const std::uint32_t d : of_three_[3])
+            if (bonds_.bonded(b, d) && !bonds_.bonded(a, d) && !bonds_.bonded(c, d))
+              add(HoleKind::tetragonal_dodecahedron,
+                  std::array{q[0], q[1], q[2], q[3], a, b, c, d});
+        }
+      }
+    }
   }
 
-  // If the spheres are all different and bonded in n_bonds pairs.
   template <std::size_t n>
-  void add(HoleKind kind, std::array<std::uint32_t, n> spheres, std::size_t n_bonds) {
+  void add(HoleKind kind, std::array<std::uint32_t, n> spheres) {
     std::ranges::sort(spheres);
-    if (std::ranges::adjacent_find(spheres) != spheres.end()) return;
-    if (bonds_.count_within(spheres) != n_bonds) return;
     double longest = 0, shortest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       for (std::size_t j = i + 1; j < spheres.size(); ++j) {
@@ -193,27 +184,23 @@ class Candidates {
   const Packing& packing_;
   const BondGraph& bonds_;
   std::vector<HoleCandidate> found_;
-  std::array<std::vector<std::uint32_t>, 4> common_;  // spheres bonded to both ends of an edge
+  std::vector<std::uint32_t> common_;  // neighbours of two corners
+  // Neighbours of corners k and k + 1 alone; of corners k - 1, k and k + 1 alone; of all four.
+  std::array<std::vector<std::uint32_t>, 4> of_edge_, of_three_;
+  std::vector<std::uint32_t> of_all_;
 };
 
 }  // namespace
 
-std::vector<Edge> edges_of(const Packing& packing,
-                           const std::vector<DelaunayTetrahedron>& tetrahedra) {
-  std::vector<std::vector<std::uint32_t>> bond_ends(packing.centres.size());  // ends, by beginning
-  for (const DelaunayTetrahedron& tetrahedron : tetrahedra) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      auto& ends = bond_ends[tetrahedron.spheres[k]];
-      for (std::size_t l = k + 1; l < 4; ++l)
-        if (std::ranges::find(ends, tetrahedron.spheres[l]) == ends.end())
-          ends.push_back(tetrahedron.spheres[l]);
-    }
-  }
+std::vector<Edge> edges_below(const Packing& packing, double length) {
+  const NeighbourFinder finder(packing, length * (1 + 1e-9));  // lengths are rounded
   std::vector<Edge> edges;
-  for (std::uint32_t i = 0; i < bond_ends.size(); ++i) {
-    std::ranges::sort(bond_ends[i]);
-    for (const std::uint32_t j : bond_ends[i])
-      edges.push_back({i, j, std::sqrt(distance_squared(packing, i, j))});
+  for (std::uint32_t i = 0; i < finder.size(); ++i) {
+    const auto first = static_cast<std::ptrdiff_t>(edges.size());
+    finder.visit_neighbours(i, [&](std::uint32_t j, Vec3, double) {
+      if (i < j) edges.push_back({i, j, std::sqrt(distance_squared(packing, i, j))});
+    });
+    std::ranges::sort(edges.begin() + first, edges.end(), {}, &Edge::j);
   }
   return edges;
 }
@@ -241,30 +228,15 @@ bool BondGraph::all_bonded(const std::array<std::uint32_t, 4>& spheres) const {
          bonded(c, d);
 }
 
-std::size_t BondGraph::count_within(std::span<const std::uint32_t> spheres) const {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    for (std::size_t j = i + 1; j < spheres.size(); ++j) count += bonded(spheres[i], spheres[j]);
-  return count;
-}
-
 void BondGraph::bonded_to_both(std::uint32_t i, std::uint32_t j,
                                std::vector<std::uint32_t>& common) const {
   common.clear();
   std::ranges::set_intersection(bonded_to(i), bonded_to(j), std::back_inserter(common));
 }
 
-std::vector<HoleCandidate> hole_candidates(const Packing& packing,
-                                           const std::vector<DelaunayTetrahedron>& tetrahedra,
-                                           const BondGraph& bonds) {
+std::vector<HoleCandidate> hole_candidates(const Packing& packing, const BondGraph& bonds) {
   Candidates candidates(packing, bonds);
-  Squares squares(bonds);
-  for (const DelaunayTetrahedron& tetrahedron : tetrahedra) {
-    const BondsOf bonded = bonds_of(tetrahedron, bonds);
-    squares.add_edges(tetrahedron.spheres, bonded);
-    candidates.add_dodecahedra(tetrahedron.spheres, bonded);
-  }
-  for (const Square& square : std::move(squares).found()) candidates.add_around(square);
+  Squares(bonds).visit_all([&](const Square& square) { candidates.add_around(square); });
   return std::move(candidates).sorted();
 }
 
