@@ -150,7 +150,7 @@ std::variant<ParameterValues, std::string> first_guess(const Model& law, Curve c
   double least = std::numeric_limits<double>::infinity();
   for (const double n : counts.x) least = n > 0 ? std::min(least, n) : least;
   for (const double n : counts.x) counts.sigma.push_back(std::sqrt(std::max(n, least)));
-  const auto outcome = fit(law, counts, {.profiles = false, .memory = false});
+  const auto outcome = fit_as_given(law, counts, {.profiles = false, .memory = false});
   if (const auto* refusal = std::get_if<Refusal>(&outcome)) return refusal->message;
   return std::get<Fit>(outcome).values();
 }

@@ -303,7 +303,8 @@ std::string compare(const std::vector<Fit>& fits, const LawComparison& compariso
                     : is_compared && law->same_curve ? "same curve"
                     : is_compared                    ? difference_text(*law)
                                                      : "-",
-                    is_compared && !is_leading ? number(law->p, 2) : "-", number(fit->runs.p, 2)});
+                    is_compared && !is_leading ? probability_text(law->p) : "-",
+                    probability_text(fit->runs.p)});
   }
   std::string text = table(rows);
   if (!comparison.laws.empty()) {

@@ -124,16 +124,24 @@ double smallest_effect_found(double level, double dof, double power) {
 TestedEnds tested_ends(const std::vector<double>& values, double best, double dof,
                        const std::function<double(double value)>& t_of) {
   TestedEnds ends{{-infinite, -infinite}, {infinite, infinite}};
+  const std::size_t n = values.size();
+  const double near = 2e-3 * (values.back() - values.front()) / static_cast<double>(n);
+  // At an end of the search t need not be 0.
+  const bool is_at_end = best - values.front() < near || values.back() - best < near;
+  const double t_best = is_at_end ? std::abs(t_of(best)) : 0;
+  const double thresholds[] = {student_two_sided(interval_levels[0], dof),
+                               student_two_sided(interval_levels[1], dof)};
+  std::size_t first = 0;  // levels that do not refute the best value itself
+  while (first < 2 && t_best > thresholds[first]) ++first;
   for (const bool is_upper : {false, true}) {
-    double inside = best, t_inside = 0;
-    std::size_t found = 0;  // levels
-    const std::size_t n = values.size();
+    double inside = best, t_inside = t_best;
+    std::size_t found = first;  // levels
     for (std::size_t i = 0; i < n && found < 2; ++i) {
       const double value = is_upper ? values[i] : values[n - 1 - i];
-      if (is_upper ? value <= best : value >= best) continue;
+      if (is_upper ? value < best + near : value > best - near) continue;
       const double t = std::abs(t_of(value));
       for (; found < 2; ++found) {
-        const double threshold = student_two_sided(interval_levels[found], dof);
+        const double threshold = thresholds[found];
         if (!(t > threshold)) break;
         const double share = std::max(0.0, (threshold - t_inside) / (t - t_inside));
         (is_upper ? ends.high : ends.low)[found] = std::lerp(inside, value, share);

@@ -57,7 +57,9 @@ struct TestedEnds {
 };
 
 /// Going outwards from the best value: where |t| first exceeds Student's at each level. Between
-/// `values` (ascending) t is taken for linear, and 0 at the best. t_of: t of a value.
+/// `values` (ascending) t is taken for linear, and 0 at the best. A best value at the first or the
+/// last of `values` is where a search ended: beyond it nothing is refuted, and a level that refutes
+/// it has no ends. t_of: t of a value.
 TestedEnds tested_ends(const std::vector<double>& values, double best, double dof,
                        const std::function<double(double value)>& t_of);
 

@@ -35,9 +35,13 @@ export function withError(value, error) {
     const factor = 10 ** scale;
     return `${withError(value / factor, error / factor)}\u00d710${superscript(scale)}`;
   }
-  const place = Math.max(0, 1 - Number(error.toExponential(1).split("e")[1]));
+  const place = 1 - Number(error.toExponential(1).split("e")[1]);
+  if (place <= 0) {
+    const unit = 10 ** -place;
+    const rounded = (n) => (Math.round(n / unit) * unit).toFixed(0);
+    return `${signed(rounded(value))}(${rounded(error)})`;
+  }
   const inUnits = Math.round(error * 10 ** place);
-  if (place === 0) return `${signed(value.toFixed(0))}(${inUnits})`;
   return `${signed(value.toFixed(place))}(${error >= 1 ? error.toFixed(place) : inUnits})`;
 }
 

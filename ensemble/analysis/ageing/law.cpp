@@ -29,13 +29,6 @@ std::vector<double> places(double low, double high) {
   return all;
 }
 
-Eigen::MatrixXd without_column(const Eigen::MatrixXd& matrix, std::size_t column) {
-  const auto i = static_cast<Eigen::Index>(column);
-  Eigen::MatrixXd rest(matrix.rows(), matrix.cols() - 1);
-  rest << matrix.leftCols(i), matrix.rightCols(matrix.cols() - i - 1);
-  return rest;
-}
-
 /// The least cost near the least of equally spaced ones, by a parabola: a valley narrower than the
 /// grid has its lowest point between places.
 struct Lowest {
@@ -354,20 +347,13 @@ Eigen::VectorXd AgeingLeastSquares::residuals(const Eigen::VectorXd& parameters)
 Eigen::VectorXd AgeingLeastSquares::weights_of(std::size_t parameter,
                                                const Eigen::VectorXd& parameters) const {
   const Eigen::MatrixXd all = slopes(parameters);
-  return beyond_others(all.col(static_cast<Eigen::Index>(parameter)),
-                       without_column(all, parameter));
-}
-
-Eigen::VectorXd AgeingLeastSquares::fitted_weights_of(std::size_t parameter,
-                                                      const Eigen::VectorXd& parameters) const {
-  const Eigen::MatrixXd all = slopes(parameters);
   const auto fitted_ones = free_parameters(parameters, all, residuals(parameters), parameter);
   return beyond_others(all.col(static_cast<Eigen::Index>(parameter)), all(Eigen::all, fitted_ones));
 }
 
 double AgeingLeastSquares::t_of(std::size_t parameter, double value) const {
   const Eigen::VectorXd parameters = fitted(on_grid(parameter, value), parameter);
-  const Eigen::VectorXd weights = fitted_weights_of(parameter, parameters);
+  const Eigen::VectorXd weights = weights_of(parameter, parameters);
   return weights.dot(residuals(parameters)) / error_of_sum(curves_, weights).error;
 }
 
@@ -377,7 +363,7 @@ LogEstimate AgeingLeastSquares::estimate(std::size_t parameter) const {
                                      : parameter % 2 == 1
                                          ? ln_tau_
                                          : places(best - farthest, best + farthest);
-  const Eigen::VectorXd weights = fitted_weights_of(parameter, best_);
+  const Eigen::VectorXd weights = weights_of(parameter, best_);
   const ErrorOf error = error_of_sum(curves_, weights / weights.squaredNorm());
   TestedEnds ends{{-infinite, -infinite}, {infinite, infinite}};
   if (describes_) {

@@ -81,10 +81,9 @@ class AgeingLeastSquares {
   Eigen::VectorXd fitted(const Eigen::VectorXd& start, std::optional<std::size_t> held) const;
   Eigen::VectorXd refined(Eigen::VectorXd parameters, std::optional<std::size_t> held) const;
   bool describes_curves() const;
-  /// For the points in the slope of the squares along a parameter, the others fitted.
+  /// For the points in the slope of the squares along a parameter, the others fitted but those at
+  /// an edge that the squares push outwards.
   Eigen::VectorXd weights_of(std::size_t parameter, const Eigen::VectorXd& parameters) const;
-  /// Those without the parameters at an edge, which are not fitted there.
-  Eigen::VectorXd fitted_weights_of(std::size_t parameter, const Eigen::VectorXd& parameters) const;
   /// Student's t of a value of a parameter.
   double t_of(std::size_t parameter, double value) const;
 

@@ -80,9 +80,13 @@ std::string typeset_with_error(double value, double error) {
     const double factor = std::pow(10.0, scale);
     return typeset_with_error(value / factor, error / factor) + "×10" + superscript(scale);
   }
-  const int decimals = std::max(0, 1 - exponent_of(error, 2));
-  const std::string in_units = fixed(std::round(error * std::pow(10.0, decimals)), 0);
-  if (decimals == 0) return with_minus(fixed(value, 0)) + "(" + in_units + ")";
+  const int decimals = 1 - exponent_of(error, 2);
+  const double unit = std::pow(10.0, -decimals);
+  if (decimals <= 0) {
+    const auto rounded = [&](double number) { return fixed(std::round(number / unit) * unit, 0); };
+    return with_minus(rounded(value)) + "(" + rounded(error) + ")";
+  }
+  const std::string in_units = fixed(std::round(error / unit), 0);
   const std::string shown = error >= 1 ? fixed(error, decimals) : in_units;
   return with_minus(fixed(value, decimals)) + "(" + shown + ")";
 }
