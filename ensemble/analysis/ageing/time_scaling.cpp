@@ -130,7 +130,7 @@ Ages of_ages(const LogCurves& all, const std::vector<std::uint64_t>& waiting_tim
 
 // Requires a curve.
 std::string first_of(const Ages& ages) {
-  return fmt::format("t_W = {:.0f}", ages.t_w[0]);
+  return finite_text("t_W = {:.0f}", ages.t_w[0]);
 }
 
 /// The least squares of ln A = F(ln t - mu ln t_W), or of that plus a scale that ages.
