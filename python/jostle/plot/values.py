@@ -57,7 +57,10 @@ def with_error(value: float, error: float) -> str:
     if scale >= 6 or scale < -4:
         factor = 10.0 ** scale
         return f"{with_error(value / factor, error / factor)}\u00d710{superscript(scale)}"
-    decimals = max(0, 1 - int(f"{error:.1e}".split("e")[1]))
-    in_units = f"{math.floor(error * 10 ** decimals + 0.5):.0f}"
-    shown = f"{error:.{decimals}f}" if error >= 1 and decimals > 0 else in_units
+    decimals = 1 - int(f"{error:.1e}".split("e")[1])
+    if decimals <= 0:
+        unit = 10 ** -decimals
+        value, error = (unit * math.floor(x / unit + 0.5) for x in (value, error))
+        return f"{f'{value:.0f}'.replace('-', MINUS)}({error:.0f})"
+    shown = f"{error:.{decimals}f}" if error >= 1 else f"{math.floor(error * 10 ** decimals + 0.5):.0f}"
     return f"{f'{value:.{decimals}f}'.replace('-', MINUS)}({shown})"
