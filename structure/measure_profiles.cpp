@@ -99,7 +99,7 @@ void add_from_walls(const Packing& packing, HeightWindow window, const SidesSett
                                     .with_change = true});
   measurement.quantities.push_back({.name = "central",
                                     .values = {fractions.central},
-                                    .long_name = "packing fraction of the profile between",
+                                    .long_name = "packing fraction of the middle of the profile",
                                     .source = "Philippe & Bideau 2001, fig. 8",
                                     .with_change = true});
 }

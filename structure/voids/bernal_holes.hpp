@@ -73,10 +73,9 @@ struct BondLengths {
 /// farthest below its shortest diagonal first, at a tie the one with the lowest spheres. Regular
 /// holes therefore come before distorted ones, and large ones before those they could be cut into.
 /// Volume that no bond length explains is unclassified: with the default lengths 23 % of the volume
-/// of a bed poured by steepest descent, 11 % of one that Monte Carlo moves fitted between walls.
-/// How the rest is shared out depends on them: compare packings by one and the same rule. Requires
-/// 1 < first <= last and step > 0. Throws std::invalid_argument for periodic widths under 4
-/// diameters.
+/// of a bed poured by steepest descent. How the rest is shared out depends on them: compare
+/// packings by one and the same rule. Requires 1 < first <= last and step > 0. Throws
+/// std::invalid_argument for periodic widths under 4 diameters.
 std::vector<BernalHole> bernal_holes(const Packing& packing, const BondLengths& lengths = {});
 
 /// Like the function of a packing, with existing cells.

@@ -16,7 +16,7 @@
 #include "study/tables/analyse.hpp"
 #include "study/tables/observable_series.hpp"
 #include "study/tables/points/over_points.hpp"
-#include "study/tables/points/sweep.hpp"
+#include "study/tables/points/swept_place.hpp"
 
 namespace jostle::inline study {
 
@@ -230,8 +230,8 @@ void add_tables(const ResultsFile& file, const PointScenes& scenes,
     try {
       require_taps(file, point, series.n_realizations());
       const AnalysedSeries taps = last_taps(series, settings.last, 4, SteadyStateTest::fewest_taps);
-      group.control = place.name;
-      group.units = place.units;
+      group.control = place.swept.name;
+      group.units = place.swept.units;
       group.all.push_back({point, place.x, {taps.first_tap, taps.last_tap}});
     } catch (const BadInput& refusal) {
       group.left_out.push_back(

@@ -12,6 +12,7 @@
 #include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/student_tests.hpp"
 #include "fitting/solver/decompositions.hpp"
+#include "fitting/value_text.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -194,31 +195,23 @@ AgeTrend scale_that_ages(const Ages& ages, const PowerOfAge& power, const Tested
                        words);
 }
 
-/// Two, or as many as distinguish both ends from 0 and 1.
-int decimals_of(double low, double high) {
-  constexpr int most = 6;
-  int decimals = 2;
-  const auto is_hidden = [&](double end) {
-    const double scale = std::pow(10, decimals), shown = std::round(end * scale);
-    return shown == 0 || shown == scale;
-  };
-  while (decimals < most && (is_hidden(low) || is_hidden(high))) ++decimals;
-  return decimals;
+/// Three significant digits, or as many as distinguish it from full ageing.
+std::string end_text(double end) {
+  return number_text(end, distinguishing_digits(end, 1, 3));
 }
 
 std::string words(const AgeingExponent& found) {
   const bool low = std::isfinite(found.low_95), high = std::isfinite(found.high_95);
   if (!low && !high) return "mu is not identifiable: no limit on either side (95 %)";
   if (!low || !high) {
-    return finite_text("mu has only {} limit: mu {} {:.2g} (95 %)", low ? "a lower" : "an upper",
-                       low ? '>' : '<', low ? found.low_95 : found.high_95);
+    return fmt::format("mu has only {} limit: mu {} {} (95 %)", low ? "a lower" : "an upper",
+                       low ? '>' : '<', end_text(low ? found.low_95 : found.high_95));
   }
   const auto misfit_of = [&](double mu) {
     return found.low_95 <= mu && mu <= found.high_95 ? "not refuted" : "refuted";
   };
-  return finite_text("mu is {0:.{2}f} to {1:.{2}f} (95 %), no ageing (0) {3}, full ageing (1) {4}",
-                     found.low_95, found.high_95, decimals_of(found.low_95, found.high_95),
-                     misfit_of(0), misfit_of(1));
+  return fmt::format("mu is {} to {} (95 %), no ageing (0) {}, full ageing (1) {}",
+                     end_text(found.low_95), end_text(found.high_95), misfit_of(0), misfit_of(1));
 }
 
 AgeingExponent no_exponent(const AgeTrend& collapse) {

@@ -3,19 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
-#include "config/json/json_text.hpp"
-#include "config/sweep.hpp"
 #include "engine/numbers.hpp"
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
-#include "ensemble/protocol_steps.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 #include "study/bad_input.hpp"
 #include "study/tables/analyse.hpp"
@@ -24,6 +19,7 @@
 #include "study/tables/points/over_points.hpp"
 #include "study/tables/points/point_scenes.hpp"
 #include "study/tables/points/same_realizations.hpp"
+#include "study/tables/points/swept_place.hpp"
 
 namespace jostle::inline study {
 
@@ -34,9 +30,7 @@ struct Member {
   const ResultsFile* file = nullptr;
   std::uint32_t point = 0;
   ReachedTaps reached;
-  double x = not_a_number;
-  SweptValue swept;
-  std::string fixed_values;          // values of the sweep that do not vary with x
+  SweptPlace place;
   std::vector<double> realizations;  // with the value, by number; empty for other quantities
   double y = not_a_number;
   ErrorOf y_error;
@@ -48,79 +42,6 @@ struct Member {
   std::string copies;              // text of ObservableSeries::copies()
   bool error_is_no_basis = false;  // a fit's, of too few realizations
 };
-
-/// "/protocol/0/tap/dilate" -> 0.
-std::optional<std::size_t> tap_line(std::string_view pointer) {
-  constexpr std::string_view prefix = "/protocol/";
-  if (!pointer.starts_with(prefix)) return std::nullopt;
-  pointer.remove_prefix(prefix.size());
-  std::size_t line = 0;
-  const char* const last = pointer.data() + pointer.size();
-  const auto [end, error] = std::from_chars(pointer.data(), last, line);
-  const std::string_view rest(end, last);
-  const bool of_tap = rest == "/tap" || rest.starts_with("/tap/");
-  return error == std::errc{} && of_tap ? std::optional(line) : std::nullopt;
-}
-
-/// The name of an axis: "dilate", "width_1".
-std::string axis_name(const std::string& pointer) {
-  std::string name = short_name(pointer);
-  std::ranges::replace(name, '/', '_');
-  return name;
-}
-
-/// The pointer of the sweep that ends with a name, as labels of points and axes have it.
-std::string pointer_named(const std::string& name, const StudyPoint& swept) {
-  std::string found;
-  for (const auto& [pointer, value] : swept.sweep_values) {
-    if (!pointer.ends_with("/" + name) && axis_name(pointer) != name) continue;
-    if (!found.empty()) {
-      throw BadInput(
-          fmt::format("{} and {} are swept: name one of them by its JSON pointer", found, pointer));
-    }
-    found = pointer;
-  }
-  if (found.empty()) {
-    throw BadInput(fmt::format(
-        "{} is neither a name of what is swept nor a JSON pointer, which begins with /", name));
-  }
-  return found;
-}
-
-/// The swept quantity, and the values of the sweep that do not vary with it.
-void set_x(Member& member, const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
-           std::string against) {
-  if (against.empty()) {
-    against = swept.sweep_values.empty() ? "/protocol/0/tap" : swept.sweep_values.front().first;
-  } else if (against.front() != '/') {
-    against = pointer_named(against, swept);
-  }
-  for (const auto& [pointer, value] : swept.sweep_values) {
-    if (pointer == against || scenes.vary_together(pointer, against)) continue;
-    member.fixed_values.append(member.fixed_values.empty() ? "" : ", ")
-        .append(pointer)
-        .append(" = ")
-        .append(value);
-  }
-  const Scene& scene = scenes.point_scene(point);
-  const auto line = tap_line(against);
-  if (line && *line < scene.protocol.size() && !scene.protocol[*line].ramp) {
-    const Control strength = control(scene.protocol[*line].tap);
-    member.x = strength.value;
-    member.swept = {strength.name, strength.units,
-                    scene.protocol.size() == 1
-                        ? "strength of the taps"
-                        : fmt::format("strength of the taps of stage {}", *line + 1)};
-    return;
-  }
-  const std::optional<Json> value = scenes.value_at(point, against);
-  if (!value) throw BadInput(fmt::format("the scene has no value at {}", against));
-  if (!value->is_number()) {
-    throw BadInput(fmt::format("{} is not a number: {}", against, value->dump()));
-  }
-  member.x = value->number();
-  member.swept = {axis_name(against), "1", against};
-}
 
 /// The mean of the last taps that the points have in common, of each realization.
 void set_values(std::span<Member> members, const std::string& observable,
@@ -184,8 +105,8 @@ std::vector<std::string> places_of(std::span<const Member> members,
   for (const Member& member : members) {
     if (member.taps.empty() || member.steady != verdict) continue;
     const std::string& settings = member.file->study().points[member.point].label;
-    places.push_back(finite_text("{:.4g}", member.x));
-    if (!settings.empty() && !settings.starts_with(member.swept.name + " = "))
+    places.push_back(finite_text("{:.4g}", member.place.x));
+    if (!settings.empty() && !settings.starts_with(member.place.swept.name + " = "))
       places.back().append(" (").append(settings).append(")");
   }
   return places;
@@ -200,7 +121,7 @@ void add_steadiness(std::span<const Member> members, Table& table) {
   std::vector<std::string> open = places_of(members, Verdict::cannot_decide);
   const auto too_few = places_of(members, std::nullopt);
   open.insert(open.end(), too_few.begin(), too_few.end());
-  const std::string axis = members.front().swept.name + " = ";
+  const std::string axis = members.front().place.swept.name + " = ";
   std::string condition;
   if (!moving.empty())
     condition = "kinetic: the averaged taps still drift at " + axis + joined(moving, ", ");
@@ -225,7 +146,7 @@ void add_notes(std::span<const Member> members, Table& table) {
       taps.push_back(member.taps);
     if (!member.no_value.empty()) {
       left_out.append(left_out.empty() ? "" : "; ")
-          .append(finite_text("at {:.4g}: {}", member.x, member.no_value));
+          .append(finite_text("at {:.4g}: {}", member.place.x, member.no_value));
     }
   }
   if (!taps.empty()) table.notes.emplace_back("taps", joined(taps, ", "));
@@ -247,11 +168,11 @@ Table curve_table(std::string name, std::span<const Member> members,
   std::vector<std::vector<double>> realizations;
   std::vector<RandomKey> keys;
   for (const Member& member : members) {
-    if (member.swept.name != members.front().swept.name) {
-      throw BadInput(fmt::format("{} and {} are not one sweep", member.swept.name,
-                                 members.front().swept.name));
+    if (member.place.swept.name != members.front().place.swept.name) {
+      throw BadInput(fmt::format("{} and {} are not one sweep", member.place.swept.name,
+                                 members.front().place.swept.name));
     }
-    x.push_back(member.x);
+    x.push_back(member.place.x);
     y.push_back(member.y);
     y_error.push_back(member.y_error);
     realizations.push_back(member.realizations);
@@ -262,11 +183,11 @@ Table curve_table(std::string name, std::span<const Member> members,
   const SweepCurve curve =
       means ? SweepCurve(x, realizations, streams_of(keys)) : SweepCurve(x, y, y_error);
   std::optional<std::size_t> point;
-  if (reference) point = point_at(curve, *reference, members.front().swept.name);
+  if (reference) point = point_at(curve, *reference, members.front().place.swept.name);
   const auto valued =
       std::ranges::find_if(members, [](const Member& member) { return member.no_value.empty(); });
   const Member& first = valued == members.end() ? members.front() : *valued;
-  Table table = sweep_table(std::move(name), first.swept, first.label, curve, point);
+  Table table = sweep_table(std::move(name), first.place.swept, first.label, curve, point);
   add_notes(members, table);
   add_steadiness(members, table);
   PointNotes copies;
@@ -286,9 +207,9 @@ bool has_value(const Member& member) {
 std::string why_no_value(std::span<const Member> members,
                          const AnalysisRequest<SweepSettings>& request) {
   std::vector<std::pair<double, std::string>> reasons;
-  for (const Member& member : members) reasons.emplace_back(member.x, member.no_value);
+  for (const Member& member : members) reasons.emplace_back(member.place.x, member.no_value);
   return without_any_value(request.settings.quantity, request.observable,
-                           members.front().swept.name, reasons);
+                           members.front().place.swept.name, reasons);
 }
 
 /// A file with what is read of it once for all sweeps.
@@ -336,7 +257,7 @@ std::vector<Member> members_of(std::span<SweptFile> files,
       member.copies = series.copies();
       const StudyPoint& studied = file->study().points[point];
       member.reached = {studied.taps, series.n_rows()};
-      set_x(member, studied, scenes, point, settings.against);
+      member.place = swept_place(studied, scenes, point, settings.against);
       if (member.reached.rows == 0) {
         member.no_value = "no realization has taps";
       } else if (settings.quantity != "value") {
@@ -360,13 +281,6 @@ std::string table_name(const AnalysisRequest<SweepSettings>& request) {
 
 }  // namespace
 
-SweptPlace swept_place(const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
-                       const std::string& against) {
-  Member member;
-  set_x(member, swept, scenes, point, against);
-  return {member.x, member.swept.name, member.swept.units, member.fixed_values};
-}
-
 std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const MadeTables& made,
                                 const std::vector<AnalysisRequest<SweepSettings>>& requests) {
   std::vector<Table> tables;
@@ -389,8 +303,8 @@ std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const
       std::map<std::string, std::vector<Member>> groups;
       std::vector<std::string> order;
       for (Member& member : members_of(swept, request)) {
-        if (!groups.contains(member.fixed_values)) order.push_back(member.fixed_values);
-        groups[member.fixed_values].push_back(std::move(member));
+        if (!groups.contains(member.place.fixed_values)) order.push_back(member.place.fixed_values);
+        groups[member.place.fixed_values].push_back(std::move(member));
       }
       for (std::size_t i = 0; i < order.size(); ++i) {
         if (request.settings.quantity == "value")

@@ -11,20 +11,6 @@
 
 namespace jostle::inline study {
 
-class PointScenes;
-
-/// Place of a sweep point on a curve.
-struct SweptPlace {
-  double x = 0;
-  std::string name, units;   // units of x: a strength of taps as its control parameter
-  std::string fixed_values;  // values of the sweep that do not vary with it
-};
-
-/// `against`: JSON pointer, or the name of what is swept; empty: the first of the sweep, the
-/// strength of the taps without one. Throws BadInput.
-SweptPlace swept_place(const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
-                       const std::string& against);
-
 /// Quantities against the swept value, sweep/<observable>/<quantity> with '_' for '/': over the
 /// points of all files together, each file with its own sweep or none. A strength of taps is drawn
 /// as its control parameter, eps^(1/2) for a dilation. Where other values are swept too, one table

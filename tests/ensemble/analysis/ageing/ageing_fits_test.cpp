@@ -139,6 +139,39 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("No limit of eq. 6 is an end of its search, where curves rise as eq. 6 at its corner") {
+  // In proportion to the lag or faster: tau grows and B falls without an end.
+  const AgeingGrid short_lags{.waiting_times = grid.waiting_times,
+                              .lags = logarithmic_taps(1, 48, 10)};
+  constexpr std::uint32_t realizations = 6;
+  const double longest_tau = 1e4 * 48, least_b = 1e-3;
+  RandomStream random = test_stream(31);
+  int at_corner = 0, rejected = 0;
+  for (int ensemble = 0; ensemble < 60; ++ensemble) {
+    const double power = ensemble % 2 == 0 ? 1 : 1.3;
+    TapRows rows{.taps = taps_of(short_lags), .realizations = realizations, .values = {}};
+    std::vector<double> speeds;
+    for (std::uint32_t i = 0; i < 3 * realizations; ++i) speeds.push_back(1 + 0.3 * noise(random));
+    for (const std::uint64_t tap : rows.taps) {
+      const std::uint64_t k = tap / 1000000, lag = tap % 1000000;
+      const double way = std::pow(static_cast<double>(lag), power / 2);
+      for (std::uint32_t r = 0; r < realizations; ++r)
+        rows.values.push_back(10 + speeds[k * realizations + r] * way * (1 + 0.3 * noise(random)));
+    }
+    for (const AgeingLaw& law : fit_ageing(rows, short_lags).own) {
+      CAPTURE(ensemble, law.verdict, law.tau.high_95, law.b.low_95);
+      for (const double end : {law.tau.high_68, law.tau.high_95})
+        CHECK((std::isinf(end) || end < 0.99 * longest_tau));
+      for (const double end : {law.b.low_68, law.b.low_95})
+        CHECK((end == 0 || end > 1.01 * least_b));
+      at_corner += !std::isfinite(law.tau.high_95) && law.b.low_95 == 0;
+      if (power > 1) rejected += law.verdict.find("does not describe") != std::string::npos;
+    }
+  }
+  CHECK(at_corner > 60);
+  CHECK(rejected >= 81);  // nine in ten curves that eq. 6 cannot follow
+}
+
 // Sum of squares of ln A about eq. 6 with the best A_inf.
 double squares_at(const LogCurves& curve, double ln_b, double ln_tau) {
   Eigen::VectorXd residual = curve.ln_a;

@@ -187,6 +187,22 @@ TEST_CASE("mu has a value where it is limited on both sides, within the range of
   CHECK(closed > 0);
 }
 
+TEST_CASE("Printed ends of mu are on the side of no and of full ageing that they are on") {
+  int near = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const AgeingExponent found =
+        ageing_exponent(curves_of(8000 + seed, 40, power(0.02)), ages, "a");
+    CAPTURE(seed, found.verdict, found.low_95, found.high_95);
+    if (!std::isfinite(found.low_95) || !std::isfinite(found.high_95)) continue;
+    REQUIRE(found.verdict.starts_with("mu is "));
+    const double printed = std::stod(found.verdict.substr(6));
+    CHECK((printed > 0) == (found.low_95 > 0));
+    CHECK(printed == Approx(found.low_95).epsilon(0.01));
+    near += std::abs(found.low_95) < 0.005;
+  }
+  CHECK(near > 0);
+}
+
 TEST_CASE("Curves with no more points than F has parameters do not constrain mu") {
   // Two ages of four lags each, far apart: whatever mu, F can be anything.
   LogCurves few = curves_of(4, 20, power(0.6));
