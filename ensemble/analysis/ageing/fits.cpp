@@ -32,11 +32,13 @@ std::vector<std::uint32_t> complete_realizations(const TapRows& rows) {
   return complete;
 }
 
-// Describes how the data constrain one parameter; empty where they constrain it well.
-std::string statement(const char* name, const LogEstimate& estimate) {
+// Describes how the data constrain one parameter; empty where they constrain it well, and of a
+// scale, whose limits are those beside a held B, where both exist.
+std::string statement(const char* name, const LogEstimate& estimate, bool is_scale = false) {
   const bool has_lower = estimate.low_95 > 0, has_upper = std::isfinite(estimate.high_95);
   if (has_lower && has_upper) {
-    if (estimate.high_95 <= wide * estimate.value && wide * estimate.low_95 >= estimate.value) {
+    if (is_scale ||
+        (estimate.high_95 <= wide * estimate.value && wide * estimate.low_95 >= estimate.value)) {
       return "";
     }
     return finite_text("{} is wide: {:.3g} to {:.3g} (95 %)", name, estimate.low_95,
@@ -74,11 +76,11 @@ AgeingLaw law_of(const AgeingLeastSquares& fit, std::size_t curve, LogEstimate a
     return law;
   }
   for (const std::string& text :
-       {statement("A_inf", law.a_inf), law.b_is_held ? "" : statement("B", law.b),
-        statement("tau", law.tau)}) {
+       {statement("A_inf", law.a_inf, law.b_is_held), law.b_is_held ? "" : statement("B", law.b),
+        statement("tau", law.tau, law.b_is_held)}) {
     if (!text.empty()) law.verdict.append(law.verdict.empty() ? "" : ", ").append(text);
   }
-  if (law.verdict.empty()) law.verdict = "identified";
+  if (law.verdict.empty() && !law.b_is_held) law.verdict = "identified";
   return law;
 }
 
@@ -120,7 +122,7 @@ void fit_shared(const LogCurves& curves, std::size_t n_lags, int threads, Ageing
     held = statement("B", b) +
            finite_text(
                ": it is held at {:.3g}, and of A_inf and tau only ratios between waiting "
-               "times mean something; ",
+               "times mean something",
                b.value);
     fit = AgeingLeastSquares(curves, std::log(b.value));
   }
@@ -132,7 +134,7 @@ void fit_shared(const LogCurves& curves, std::size_t n_lags, int threads, Ageing
     AgeingLaw& law = fits.shared[k] =
         law_of(fit, curve, estimates[AgeingLeastSquares::a_inf(curve)], b,
                estimates[AgeingLeastSquares::tau(curve)]);
-    law.verdict = held + law.verdict;
+    law.verdict = held + (held.empty() || law.verdict.empty() ? "" : "; ") + law.verdict;
     if (!law.is_determined()) {
       law.verdict += ": no shared law, nothing to scale by";
       continue;

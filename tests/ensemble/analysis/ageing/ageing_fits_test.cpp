@@ -254,6 +254,7 @@ TEST_CASE("Where B has no limit it is held, and curves keep their scales", "[sta
     CAPTURE(k, law.verdict);
     CHECK(law.verdict.starts_with("B has only an upper limit: B < "));
     CHECK(law.verdict.find("it is held at ") != std::string::npos);
+    CHECK(law.verdict.ends_with("only ratios between waiting times mean something"));
     CHECK(law.b_is_held);
     CHECK(law.b.low_95 == 0);
     REQUIRE(law.is_determined());
