@@ -63,30 +63,59 @@ function(jostle_unify target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# jostle_library(engine [NOT_HOT] SOURCES a.cpp ... [SEPARATE b.cpp ...] PUBLIC jostle_x ... PRIVATE ...): one
-# folder, one library, installed as jostle::engine. SEPARATE sources hold the loops that runs spend their time in:
-# each is a unit of its own, so that the compiler's limits on inlining see that loop alone. Link only what the arrows allow: engine <- structure <-
+# jostle_sources(TARGET GROUP SOURCES ...): compiles the sources of a library, with the precompiled headers of a group.
+function(jostle_sources target group)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:jostle_options>)
+  target_include_directories(
+    ${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+                     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/jostle/internal>)
+  if(group STREQUAL not_hot)
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:jostle_not_hot>)
+    jostle_precompile(${target} not_hot ${JOSTLE_COMMON_HEADERS} <filesystem> <fmt/format.h>)
+  elseif(group STREQUAL hot_eigen)
+    jostle_precompile(${target} hot_eigen ${JOSTLE_COMMON_HEADERS} <Eigen/Core>)
+  else()
+    jostle_precompile(${target} hot ${JOSTLE_COMMON_HEADERS})
+  endif()
+  jostle_unify(${target} ${ARGN})
+endfunction()
+
+# jostle_library(engine [NOT_HOT] [FIRST_RUN a.cpp ...] SOURCES b.cpp ... [SEPARATE c.cpp ...] PUBLIC jostle_x ...
+# PRIVATE ...): one folder, one library, installed as jostle::engine. FIRST_RUN sources are those that running a scene
+# needs: they are units of their own, also in jostle_engine_first_run, which is not installed, for the program of a
+# first run (cli). SEPARATE sources hold the loops that runs spend their time in: each is a unit of its own, so that
+# the compiler's limits on inlining see that loop alone. Link only what the arrows allow: engine <- structure <-
 # ensemble; config and results use those; study joins them, and cli is its command line.
 function(jostle_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_HOT" "" "SOURCES;SEPARATE;PUBLIC;PRIVATE")
-  add_library(jostle_${name} STATIC ${arg_SOURCES} ${arg_SEPARATE})
-  add_library(jostle::${name} ALIAS jostle_${name})
-  set_target_properties(jostle_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
-  target_compile_features(jostle_${name} PUBLIC cxx_std_20)
-  target_link_libraries(jostle_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE}
-                                       $<BUILD_INTERFACE:jostle_options>)
-  target_include_directories(
-    jostle_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
-                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/jostle/internal>)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_HOT" "" "FIRST_RUN;SOURCES;SEPARATE;PUBLIC;PRIVATE")
+  set(group hot)
   if(arg_NOT_HOT)
-    target_link_libraries(jostle_${name} PRIVATE $<BUILD_INTERFACE:jostle_not_hot>)
-    jostle_precompile(jostle_${name} not_hot ${JOSTLE_COMMON_HEADERS} <filesystem> <fmt/format.h>)
-  elseif(Eigen3::Eigen IN_LIST arg_PUBLIC OR jostle_fitting IN_LIST arg_PUBLIC)
-    jostle_precompile(jostle_${name} hot_eigen ${JOSTLE_COMMON_HEADERS} <Eigen/Core>)
-  else()
-    jostle_precompile(jostle_${name} hot ${JOSTLE_COMMON_HEADERS})
+    set(group not_hot)
   endif()
-  jostle_unify(jostle_${name} ${arg_SOURCES})
+  set(first_run_objects)
+  if(arg_FIRST_RUN)
+    set(first_run jostle_${name}_first_run)
+    add_library(${first_run} STATIC EXCLUDE_FROM_ALL ${arg_FIRST_RUN})
+    foreach(library ${arg_PUBLIC})
+      if(TARGET ${library}_first_run)
+        set(library ${library}_first_run)
+      endif()
+      target_link_libraries(${first_run} PUBLIC ${library})
+    endforeach()
+    target_link_libraries(${first_run} PRIVATE ${arg_PRIVATE})
+    jostle_sources(${first_run} ${group} ${arg_FIRST_RUN})
+    set(first_run_objects $<TARGET_OBJECTS:${first_run}>)
+  endif()
+  if(group STREQUAL hot AND (Eigen3::Eigen IN_LIST arg_PUBLIC OR jostle_fitting IN_LIST arg_PUBLIC))
+    set(group hot_eigen)
+  endif()
+  add_library(jostle_${name} STATIC ${arg_SOURCES} ${arg_SEPARATE} ${first_run_objects})
+  add_library(jostle::${name} ALIAS jostle_${name})
+  set_target_properties(jostle_${name} PROPERTIES EXPORT_NAME ${name})
+  target_link_libraries(jostle_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+  jostle_sources(jostle_${name} ${group} ${arg_SOURCES})
   set_property(GLOBAL APPEND PROPERTY jostle_libraries jostle_${name})
 endfunction()

@@ -342,6 +342,16 @@ Json resolved(const Scene& scene) {
   return written_object(scene_fields(), scene);
 }
 
+std::vector<std::string> requested_tables(const Scene& scene) {
+  std::vector<std::string> keys;
+  if (!scene.until.targets.empty()) keys.emplace_back("until");
+  if (!scene.fits.empty()) keys.emplace_back("fits");
+  if (!scene.analyse.empty()) keys.emplace_back("analyse");
+  if (scene.motion) keys.emplace_back("motion");
+  if (!scene.structure.empty()) keys.emplace_back("structure");
+  return keys;
+}
+
 std::string scene_schema() {
   Definitions definitions;
   Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},

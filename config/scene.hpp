@@ -231,6 +231,9 @@ struct Scene {
   bool operator==(const Scene&) const = default;
 };
 
+/// Returns the keys of the scene that request tables, which are made after the run: "fits", ...
+std::vector<std::string> requested_tables(const Scene& scene);
+
 /// The engine that the scene asks for, with its settings.
 EngineSettings engine_of(const Scene& scene);
 

@@ -9,6 +9,7 @@
 
 #include "fitting/curve.hpp"
 #include "fitting/intervals/diagnostics.hpp"
+#include "fitting/intervals/distributions.hpp"
 #include "fitting/intervals/memory.hpp"
 #include "fitting/models/model.hpp"
 #include "fitting/solver/levenberg_marquardt.hpp"
@@ -41,9 +42,6 @@ struct FitOptions {
   double max_work = 2e9;
   SolverOptions solver = {};
 };
-
-/// The probabilities of the two intervals: that of one standard error, and 95 %.
-inline constexpr double interval_levels[] = {0.682689492137086, 0.95};
 
 /// A confidence interval; an infinite end means that the data set no limit on this side (or not
 /// within a factor 10^6 for a bounded parameter, 100 values or ranges of X for a value, else 10^4
@@ -88,12 +86,6 @@ struct Estimate {
   /// Half of the 68 % interval, 0 if fixed; infinite where it is open or there is none.
   double half_width() const;
 };
-
-/// Half the width of the interval that holds the truth with probability `level`, of an estimate
-/// with this standard error and Student's t of dof degrees of freedom (the normal distribution
-/// where dof is infinite). Every a(b), bar and band that a person reads is this, at 68 %. NaN
-/// without degrees of freedom.
-double half_width(double error, double dof, double level = interval_levels[0]);
 
 /// The law that another becomes where some of its parameters are 0 or infinite, as it was fitted.
 struct LimitingFit {

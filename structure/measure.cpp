@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
 #include "structure/measure_parts.hpp"
 #include "structure/order/neighbours.hpp"
-#include "structure/voids/pores.hpp"
 
 namespace jostle::inline structure {
 
@@ -43,13 +41,6 @@ void require_region(const MeasuredPacking& measured) {
   }
 }
 
-/// Parts that are defined for spheres of several sizes.
-template <class Settings>
-constexpr bool takes_sizes =
-    std::is_same_v<Settings, ProfileSettings> || std::is_same_v<Settings, SidesSettings> ||
-    std::is_same_v<Settings, CoordinationSettings> || std::is_same_v<Settings, GapsSettings> ||
-    std::is_same_v<Settings, PairsSettings> || std::is_same_v<Settings, VoronoiSettings>;
-
 template <class Settings>
 void add_part(const char* name, MeasuredPacking& measured, const std::optional<Settings>& settings,
               bool needs_region, std::vector<Measurement>& all) {
@@ -68,44 +59,6 @@ void add_part(const char* name, MeasuredPacking& measured, const std::optional<S
 }
 
 }  // namespace
-
-StructureSettings all_structure() {
-  StructureSettings all;
-  all.profile.emplace();
-  all.sides.emplace();
-  all.layers.emplace();
-  all.coordination.emplace();
-  all.pair_correlation.emplace();
-  all.order.emplace();
-  all.gaps.emplace();
-  all.structure_factor.emplace();
-  all.voronoi.emplace();
-  all.clusters.emplace();
-  all.pores.emplace();
-  all.void_probability.emplace();
-  all.holes.emplace();
-  return all;
-}
-
-Region bulk_of(const Packing& packing) {
-  if (const Boundary boundary(packing.container); boundary.periodic_z) {
-    return {0, boundary.height, 0};
-  }
-  Region region = pore_region;
-  region.high = std::min(region.high, 2 * mean_height(packing) - 2 * sphere_radius);
-  return region;
-}
-
-std::vector<std::string> parts_of_equal_spheres(const StructureSettings& settings) {
-  std::vector<std::string> names;
-  const auto look_at = [&]<class Settings>(const std::optional<Settings>& part) {
-    if (part && !takes_sizes<Settings>) names.emplace_back(Settings::description.name);
-  };
-  std::apply(
-      [&](const auto& /*region*/, const auto&... part) { (look_at(settings.*part.member), ...); },
-      StructureSettings::fields());
-  return names;
-}
 
 std::vector<Measurement> measure(const Packing& packing, const StructureSettings& settings,
                                  StreamKey points) {

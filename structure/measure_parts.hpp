@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 #include "structure/measure.hpp"
 #include "structure/voids/voronoi.hpp"
@@ -24,6 +25,13 @@ struct MeasuredPacking {
     return region.contains(packing.container, packing.centres[i]);
   }
 };
+
+/// Parts that are defined for spheres of several sizes.
+template <class Settings>
+constexpr bool takes_sizes =
+    std::is_same_v<Settings, ProfileSettings> || std::is_same_v<Settings, SidesSettings> ||
+    std::is_same_v<Settings, CoordinationSettings> || std::is_same_v<Settings, GapsSettings> ||
+    std::is_same_v<Settings, PairsSettings> || std::is_same_v<Settings, VoronoiSettings>;
 
 Measurement measure_part(MeasuredPacking& measured, const ProfileSettings& settings);
 Measurement measure_part(MeasuredPacking& measured, const SidesSettings& settings);

@@ -34,11 +34,11 @@ std::uint32_t first_kind(const Sizes& sizes, const Order& order) {
 }
 
 /// One direction, divided into cells of equal width.
-struct CellAxis {
+struct EvenCells {
   double low, width;
   std::uint64_t n;
 
-  CellAxis(double begin, double end, double centre)
+  EvenCells(double begin, double end, double centre)
       : low(begin),
         width(end - begin),
         n(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(width / centre)))) {}
@@ -87,7 +87,7 @@ double lacey_index(const Packing& packing, std::uint32_t kind, double cell) {
   };
   const Boundary boundary(packing.container);
   const double top = boundary.periodic_z ? boundary.height : surface_height(packing);
-  const CellAxis x(0, boundary.width_x, cell), y(0, boundary.width_y, cell), z(0, top, cell);
+  const EvenCells x(0, boundary.width_x, cell), y(0, boundary.width_y, cell), z(0, top, cell);
   std::map<std::uint64_t, Count> cells;
   Count bed;
   for (std::size_t i = 0; i < packing.centres.size(); ++i) {

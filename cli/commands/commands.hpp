@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli/options/command.hpp"
+#include "cli/tables/scene_tables.hpp"
 #include "cli/terminal/exit_codes.hpp"
 
 // One function a subcommand: it describes its options to the parser, and leaves its exit code in
@@ -8,7 +9,8 @@
 namespace jostle::inline cli {
 
 void add_new(Command& app, int& code);
-void add_run(Command& app, int& code);
+/// Without `make_tables`, `run` refuses scenes that request tables.
+void add_run(Command& app, int& code, SceneTablesMaker* make_tables);
 void add_check(Command& app, int& code);
 void add_cost(Command& app, int& code);
 void add_schema(Command& app, int& code);
@@ -23,5 +25,7 @@ void add_analyse(Command& app, int& code);
 void add_export(Command& app, int& code);
 void add_structure(Command& app, int& code);
 void add_report(Command& app, int& code);
+/// `requests`: of the program of a first run alone.
+void add_requests(Command& app, int& code);
 
 }  // namespace jostle::inline cli

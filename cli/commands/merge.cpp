@@ -8,7 +8,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/files/output_file.hpp"
 #include "cli/files/waiting.hpp"
-#include "cli/tables/tables_display.hpp"
+#include "cli/tables/scene_tables.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
@@ -18,7 +18,6 @@
 #include "study/planning/shards.hpp"
 #include "study/provenance.hpp"
 #include "study/running/merge.hpp"
-#include "study/running/scene_tables.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -81,10 +80,9 @@ void add_merge(Command& app, int& code) {
     warn_of_lost_seals(arguments->inputs);
     print(fmt::format("{}: {} merged\n", arguments->output,
                       counted(arguments->inputs.size(), "file")));
-    TablesDisplay display(Quiet::no, {.width = screen().width});
-    store_scene_tables(ResultsFile(arguments->output), available_cpus(), display,
-                       arguments->patience);
-    display.print_summary();
+    make_scene_tables(ResultsFile(arguments->output), {.threads = available_cpus(),
+                                                       .patience = arguments->patience,
+                                                       .layout = {.width = screen().width}});
     code = exit_ok;
   });
 }

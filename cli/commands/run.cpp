@@ -15,7 +15,7 @@
 #include "cli/reports/next_commands.hpp"
 #include "cli/reports/report.hpp"
 #include "cli/tables/durations.hpp"
-#include "cli/tables/tables_display.hpp"
+#include "cli/tables/scene_tables.hpp"
 #include "cli/tables/wrapped.hpp"
 #include "cli/terminal/failure.hpp"
 #include "cli/terminal/log.hpp"
@@ -23,6 +23,7 @@
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "cli/terminal/stop_request.hpp"
+#include "config/json/json_text.hpp"
 #include "ensemble/statistics/counted.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 #include "results/checkpoints/part.hpp"
@@ -160,7 +161,7 @@ void print_end(const ResultsFile& file, const RunSettings& settings) {
 
 /// From the first realization to the last table. Returns the exit code.
 int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& settings,
-               const StopRequest& stop) {
+               const StopRequest& stop, SceneTablesMaker* make_tables) {
   const auto began = std::chrono::steady_clock::now();
   const bool stopped = !run.compute_until_precise();
   if (!arguments.quiet) {
@@ -188,11 +189,13 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   const std::vector<std::string> tables_before = run.tables_before();
   const ResultsFile file = run.close();
   std::vector<std::string> tables = file.table_names();
-  if (settings.shard.count == 1) {
-    TablesDisplay display(arguments.quiet ? Quiet::yes : Quiet::no, arguments.layout,
-                          arguments.verbose ? TableDetail::full : TableDetail::summary);
-    const auto stored = store_scene_tables(file, settings.threads, display, settings.patience);
-    display.print_summary();
+  if (settings.shard.count == 1 && make_tables != nullptr) {
+    const auto stored =
+        make_tables(file, {.threads = settings.threads,
+                           .patience = settings.patience,
+                           .quiet = arguments.quiet ? Quiet::yes : Quiet::no,
+                           .layout = arguments.layout,
+                           .detail = arguments.verbose ? TableDetail::full : TableDetail::summary});
     tables.insert(tables.end(), stored.begin(), stored.end());
   }
   say_which_tables_are_gone(tables_before, tables, settings.output);
@@ -202,13 +205,23 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   return failures.empty() ? exit_ok : exit_failed_realizations;
 }
 
-int run(const RunArguments& arguments) {
+/// A program without tables runs only scenes that request none.
+void require_no_tables(const Scene& scene) {
+  const std::vector<std::string> keys = requested_tables(scene);
+  if (keys.empty()) return;
+  throw BadInput(fmt::format(
+      "the scene requests tables ({}), which this program does not make: run it with jostle",
+      joined(keys, ", ")));
+}
+
+int run(const RunArguments& arguments, SceneTablesMaker* make_tables) {
   StopRequest stop;  // from here on, signals stop and do not kill
   if (arguments.quiet) silence_log();
   if (arguments.force && (arguments.resume || arguments.retry_failed)) {
     log_line("--force with a resume takes over another host's lock, and replaces no file");
   }
   const LoadedScene loaded = load_scene(arguments.scene);
+  if (make_tables == nullptr) require_no_tables(loaded.scene);
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   RunSettings settings = settings_of(arguments, loaded, threads);
   settings.stop = &stop.flag();
@@ -222,7 +235,7 @@ int run(const RunArguments& arguments) {
     if (settings.existing == Existing::resume) read.push_back(settings.output);
     warn_of_lost_seals(read);
     if (arguments.time_limit) stop.stop_after(*arguments.time_limit);
-    return run_to_end(arguments, run, settings, stop);
+    return run_to_end(arguments, run, settings, stop, make_tables);
   } catch (const BadInput&) {
     throw;
   } catch (const std::exception& error) {
@@ -281,7 +294,7 @@ void add_options(Command& command, RunArguments& arguments) {
 
 }  // namespace
 
-void add_run(Command& app, int& code) {
+void add_run(Command& app, int& code, SceneTablesMaker* make_tables) {
   Command command = app.add_command("run", "Run a scene and write its results");
   auto arguments = std::make_shared<RunArguments>();
   add_options(command, *arguments);
@@ -293,7 +306,19 @@ void add_run(Command& app, int& code) {
       "\n"
       "SIGINT, SIGTERM, SIGUSR1 and the time limit stop at the end of a sweep: all is stored, the\n"
       "command that continues is printed, and the exit code is 75.");
-  command.run([arguments, &code] { code = run(*arguments); });
+  command.run([arguments, make_tables, &code] { code = run(*arguments, make_tables); });
+}
+
+void add_requests(Command& app, int& code) {
+  Command command =
+      app.add_command("requests", "Print the keys of a scene that request tables of its run");
+  auto arguments = std::make_shared<RunArguments>();
+  add_options(command, *arguments);
+  command.run([arguments, &code] {
+    const std::vector<std::string> keys = requested_tables(load_scene(arguments->scene).scene);
+    if (!keys.empty()) print(joined(keys, ", ") + "\n");
+    code = keys.empty() ? exit_ok : exit_requests;
+  });
 }
 
 }  // namespace jostle::inline cli

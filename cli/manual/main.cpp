@@ -21,7 +21,7 @@ void write(const std::filesystem::path& path, const std::string& text) {
 void write_all(const std::filesystem::path& folder) {
   jostle::CommandLine line("jostle", jostle::program_description);
   int code = 0;
-  jostle::describe_program(line, code);
+  jostle::describe_program(line, code, jostle::every_command());
   const jostle::CommandText program = line.text();
   write(folder / "man1/jostle.1", program_page(program, jostle::version()));
   for (const jostle::CommandText& command : program.commands) {

@@ -32,4 +32,13 @@ void TablesDisplay::without_structure(const std::string& reason) {
   print_to_standard_error(fmt::format("jostle: no structure: {}\n", reason));
 }
 
+std::vector<std::string> make_scene_tables(const ResultsFile& file,
+                                           const SceneTablesRequest& request) {
+  TablesDisplay display(request.quiet, request.layout, request.detail);
+  std::vector<std::string> names =
+      store_scene_tables(file, request.threads, display, request.patience);
+  display.print_summary();
+  return names;
+}
+
 }  // namespace jostle::inline cli

@@ -5,14 +5,10 @@
 #include "cli/reports/fit_output.hpp"
 #include "cli/reports/scene_summary.hpp"
 #include "cli/tables/layout.hpp"
+#include "cli/tables/scene_tables.hpp"
 #include "study/running/scene_tables.hpp"
 
 namespace jostle::inline cli {
-
-enum class Quiet { no, yes };
-
-/// How much of each fit, analysis and part of structure is printed.
-enum class TableDetail { summary, full };
 
 /// Prints the tables that a scene requests: their results by print_summary(), or each table at once
 /// in full. If quiet, prints only failures, on stderr.

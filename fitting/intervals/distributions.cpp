@@ -102,4 +102,8 @@ double two_sided(double level, double dof) {
   return std::isfinite(dof) ? student_two_sided(level, dof) : normal_two_sided(level);
 }
 
+double half_width(double error, double dof, double level) {
+  return dof > 0 ? error * two_sided(level, dof) : std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace jostle::inline fitting

@@ -20,4 +20,13 @@ double fisher_tail(double f, double dof_1, double dof_2);
 /// Probability that chi2 with dof > 0 degrees of freedom exceeds x >= 0.
 double chi_squared_tail(double x, double dof);
 
+/// The probabilities of the two intervals: that of one standard error, and 95 %.
+inline constexpr double interval_levels[] = {0.682689492137086, 0.95};
+
+/// Half the width of the interval that holds the truth with probability `level`, of an estimate
+/// with this standard error and Student's t of dof degrees of freedom (the normal distribution
+/// where dof is infinite). Every a(b), bar and band that a person reads is this, at 68 %. NaN
+/// without degrees of freedom.
+double half_width(double error, double dof, double level = interval_levels[0]);
+
 }  // namespace jostle::inline fitting

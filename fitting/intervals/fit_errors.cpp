@@ -103,10 +103,6 @@ Eigen::MatrixXd curvature_along(const CurveResiduals& residuals, const Eigen::Ve
 
 }  // namespace
 
-double half_width(double error, double dof, double level) {
-  return dof > 0 ? error * two_sided(level, dof) : std::numeric_limits<double>::quiet_NaN();
-}
-
 LinearProblem linear_problem(const Model& model, const Curve& curve, const ParameterValues& values,
                              const std::vector<bool>& free) {
   const CurveResiduals residuals(model, curve, values, free);

@@ -14,7 +14,7 @@
 #include "results/disk/input_file.hpp"
 #include "results/disk/printable.hpp"
 #include "results/export/extended_xyz_header.hpp"
-#include "results/export/particle_columns.hpp"
+#include "results/export/packing_file.hpp"
 #include "structure/order/neighbours.hpp"
 
 namespace jostle::inline results {

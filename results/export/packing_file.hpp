@@ -23,6 +23,11 @@ struct PackingSelector {
 /// packing or it is malformed; overlaps are not looked for.
 Packing read_packing(const std::string& path, const PackingSelector& selector = {});
 
+/// The packing with its centres inside the container, where cells and neighbours are sought; those
+/// of another program may be periods away. Throws std::invalid_argument naming a sphere that no
+/// period brings inside.
+Packing wrapped_inside(const Packing& packing);
+
 /// Writes one frame of extended XYZ that reads back to the same bits.
 void write_extended_xyz(const std::string& path, const Packing& packing);
 

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "engine/bed/boundary.hpp"
+#include "results/export/packing_file.hpp"
 #include "structure/order/bond_order.hpp"
 #include "structure/order/crystal_order.hpp"
 #include "structure/snapshot_statistics.hpp"
@@ -33,25 +33,6 @@ std::vector<double> components_of(const std::vector<Vec3>& vectors) {
   for (const Vec3& vector : vectors)
     components.insert(components.end(), {vector.x, vector.y, vector.z});
   return components;
-}
-
-Packing wrapped_inside(const Packing& packing) {
-  Packing moved = packing;
-  const Boundary boundary(packing.container);
-  for (std::size_t i = 0; i < moved.centres.size(); ++i) {
-    Vec3& r = moved.centres[i];
-    r = into_periods(boundary, r);
-    const bool is_inside = r.x >= 0 && r.x <= boundary.width_x && r.y >= 0 &&
-                           r.y <= boundary.width_y && r.z >= 0 && r.z <= boundary.height &&
-                           boundary_depth(boundary, r) <= sphere_radius;
-    if (!is_inside) {
-      throw std::invalid_argument(fmt::format(
-          "sphere {} lies outside the container, at {}, {}, {}; check that lengths are in "
-          "diameters and that the packing was made in this container",
-          i, r.x, r.y, r.z));
-    }
-  }
-  return moved;
 }
 
 std::vector<ParticleColumn> particle_columns(const Packing& packing) {

@@ -34,11 +34,6 @@ struct ExportedFrame {
 /// Returns x, y, z of every vector, one after the other.
 std::vector<double> components_of(const std::vector<Vec3>& vectors);
 
-/// The packing with its centres inside the container, where cells and neighbours are sought; those
-/// of another program may be periods away. Throws std::invalid_argument naming a sphere that no
-/// period brings inside.
-Packing wrapped_inside(const Packing& packing);
-
 /// A sphere of a mixture has `radius`, `kind` (its number), `mass`, `coordination` (centres within
 /// 1.05 times the sum of the two radii) and `voronoi_volume` (of its radical cell). An equal sphere
 /// has `radius` and `voronoi_volume` (diameters and their cubes; cells end at floor, walls, and

@@ -48,6 +48,7 @@ std::vector<Table> analyses_of(const ResultsFile& file, const Scene& scene, int 
 /// Those before one that cannot be made are in `groups` all the same.
 void make_tables(const ResultsFile& file, const Scene& scene, int threads, TablesObserver& observer,
                  std::vector<TableGroup>& groups) {
+  if (requested_tables(scene).empty()) return;  // a program that makes none relies on this list
   if (!scene.until.targets.empty()) {
     groups.push_back({"analysis", {precision_status(file, scene.until).table}});
   }

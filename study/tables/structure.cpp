@@ -18,7 +18,7 @@
 #include "ensemble/statistics/finite_text.hpp"
 #include "results/export/export.hpp"
 #include "results/export/extended_xyz.hpp"
-#include "results/export/particle_columns.hpp"
+#include "results/export/packing_file.hpp"
 #include "results/groups/layout.hpp"
 #include "study/bad_input.hpp"
 #include "study/tables/repeated_series.hpp"

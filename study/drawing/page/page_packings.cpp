@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "ensemble/parallel.hpp"
+#include "results/export/packing_file.hpp"
 #include "results/export/particle_columns.hpp"
 #include "study/drawing/drawn/drawn_results.hpp"
 #include "study/drawing/drawn/thinning.hpp"
