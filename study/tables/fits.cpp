@@ -134,9 +134,11 @@ void add_estimates(Table& table, const EstimateColumns& columns, const std::stri
        ""},
       {prefix + "identifiability", axes, columns.found, "", "the statement in a word", ""},
       values(prefix + "interval_lower", ends, columns.lower,
-             "lower end of the profile-likelihood interval"),
+             "lower end of the interval: by profile likelihood, or Student's t where "
+             "realizations differ in shape"),
       values(prefix + "interval_upper", ends, columns.upper,
-             "upper end of the profile-likelihood interval")};
+             "upper end of the interval: by profile likelihood, or Student's t where "
+             "realizations differ in shape")};
   table.quantities.insert(table.quantities.end(), added.begin(), added.end());
 }
 
