@@ -37,11 +37,13 @@ std::string power_of(const AgeTrend& found, const TestedChange& words) {
   const std::string change =
       fmt::format("change of {} from {} to the last", words.quantity, words.first);
   if (std::isnan(found.p)) return change + ": no test, its error is not known";
-  const std::string power =
-      std::isnan(found.detectable)
-          ? "but its error is beyond all factors: none would be found"
-          : finite_text("a factor of {:.3g} would be found with power 0.8", found.detectable);
-  return change + ": " + p_text(found.p) + ", " + power;
+  if (std::isnan(found.detectable)) {
+    return fmt::format("{}: {}, {}its error is beyond all factors: none would be found", change,
+                       p_text(found.p),
+                       found.p < significant ? "which does not count because " : "");
+  }
+  return finite_text("{}: {}, a factor of {:.3g} would be found with power 0.8", change,
+                     p_text(found.p), found.detectable);
 }
 
 // An error beyond all factors leaves a small p without a meaning.
@@ -76,6 +78,10 @@ AgeTrend agreed(const AgeTrend& first, const AgeTrend& second, std::size_t reali
   }
   found.verdict = verdict(found, found.detectable <= decisive && !finds(first) && !finds(second),
                           realizations, words);
+  if (finds(first) != finds(second)) {
+    found.verdict += fmt::format("; one of the two tests rejects, {}",
+                                 plain_p_text(std::min(first.p, second.p)));
+  }
   return found;
 }
 
@@ -123,9 +129,9 @@ AgeTrend trend_of_b(const AgeingLeastSquares& fit) {
     }
   }
   const Eigen::VectorXd weights = beyond_others(column, slopes);
-  if (!(weights.squaredNorm() > 0)) return cannot_decide("the curves do not constrain b");
+  if (!(weights.squaredNorm() > 0)) return cannot_decide("the curves do not constrain B");
   return tested_change(curves, weights, fit.residuals(fit.best()),
-                       {"b", "collapse refuted", "collapse not refuted"});
+                       {"B", "collapse refuted", "collapse not refuted"});
 }
 
 }  // namespace jostle::inline ensemble
