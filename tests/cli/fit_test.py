@@ -286,6 +286,17 @@ class Files(Case):
                 again = self.jostle("fit", name, *option, "--figures", folder, expect=BAD_INPUT)
                 self.assertIn("exists and is kept", again.stderr)
 
+    def test_figures_draw_all_points_or_give_their_number(self):
+        for n in (60, 500):
+            rows = [f"{t},{0.6 - 0.05 * math.exp(-((t / 40) ** 0.6)) + 1e-4 * math.sin(17 * t)}" for t in range(1, n + 1)]
+            (self.folder / f"of_{n}.csv").write_text("\n".join(["t,X", *rows]) + "\n")
+            self.jostle("fit", f"of_{n}.csv", "--model", "kww", "--figures", f"of_{n}")
+            rows = (self.folder / f"of_{n}/fits-of-x.csv").read_text().splitlines()
+            drawn = sum(row.split(",")[1] == "data" for row in rows[1:])
+            caption = (self.folder / f"of_{n}/fits-of-x.json").read_text()
+            self.assertEqual(drawn == n, n == 60)
+            self.assertEqual(caption.count(f" {drawn} of {n} points are drawn."), 0 if drawn == n else 2)  # both panels
+
     def test_a_page_shows_figure_parameters_and_notes(self):
         name = "<b>&.csv"
         (self.folder / name).write_bytes((self.folder / "v_index.csv").read_bytes())

@@ -1,5 +1,7 @@
 #include "study/drawing/drawn/thinning.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -115,7 +117,9 @@ Table thinned(const Table& table, const TableThinning& thinning) {
     const std::size_t n = size_of(axis);
     lengths[axis.name] = n;
     if (axis.name == "t") {
-      kept[axis.name] = logarithmically_spread(n, thinning.per_decade, thinning.per_decade);
+      kept[axis.name] = n <= thinning.whole
+                            ? evenly_spread(n, n)
+                            : logarithmically_spread(n, thinning.per_decade, thinning.per_decade);
     } else {
       kept[axis.name] =
           evenly_spread(n, axis.name == "tap" ? thinning.most_taps : thinning.most_places);
@@ -131,6 +135,10 @@ Table thinned(const Table& table, const TableThinning& thinning) {
     if (axis != "tap") kept[axis] = joined(std::move(kept[axis]), places);
   }
   Table thinned_table{.name = table.name, .axes = {}, .quantities = {}, .notes = table.notes};
+  if (kept.contains("t") && kept["t"].size() < lengths["t"]) {
+    thinned_table.notes.emplace_back("drawn",
+                                     fmt::format("{} of {}", kept["t"].size(), lengths["t"]));
+  }
   const auto keep = [&](const Quantity& quantity, const std::vector<std::string>& axes,
                         std::vector<Quantity>& target) {
     std::vector<std::size_t> shape;

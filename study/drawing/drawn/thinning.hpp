@@ -39,11 +39,13 @@ struct TableThinning {
   std::size_t most_taps = 24;     // most taps of the axis `tap`: evenly spread
   std::size_t most_places = 400;  // most places of any other axis except `t`
   std::size_t per_decade = 24;    // places per decade of `t`, the taps of a fitted curve
+  std::size_t whole = 0;          // longest `t` that is not thinned
 };
 
 /// The table with its axes thinned, all quantities along them likewise. The places where a quantity
 /// is least and greatest stay, at every tap that is kept: no peak is lost. A quantity that does not
-/// have as many values as its axes give is left out.
+/// have as many values as its axes give is left out. The note `drawn` gives how many places of a
+/// thinned `t` are kept.
 Table thinned(const Table& table, const TableThinning& thinning);
 
 /// Numbers and texts of a table, axes included.

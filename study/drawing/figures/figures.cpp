@@ -110,7 +110,7 @@ std::vector<Figure> figures_of(const DrawnFile& file) {
 }
 
 DrawnFigures figures_of(const FittedCurve& measured) {
-  constexpr TableThinning thinning{};
+  constexpr TableThinning thinning{.whole = 400};
   FittedCurve named = measured;
   named.source.observable = "X";
   std::vector<DrawnTable> tables;

@@ -18,22 +18,28 @@ FigureAxis t_axis(const TableView& table) {
           first > 0 && last > 100 * first ? AxisKind::logarithmic : AxisKind::linear};
 }
 
+/// " 38 of 320 points are drawn.", or empty where all are.
+std::string drawn_share(const TableView& table) {
+  const std::string drawn = table.note("drawn");
+  return drawn.empty() ? "" : fmt::format(" {} points are drawn.", drawn);
+}
+
 std::string data_caption(const TableView& table, const std::string& range) {
-  const std::string measured = table.note("measured");
+  const std::string measured = table.note("measured"), drawn = drawn_share(table);
   if (measured.empty()) {
     return fmt::format(
         "Mean over realizations (points; bars are 68 % intervals by the variance pooled over "
-        "taps) and the fitted laws, taps {}.",
-        range);
+        "taps) and the fitted laws, taps {}.{}",
+        range, drawn);
   }
   if (measured == "realizations") {
     return fmt::format(
         "Mean over {} realizations (points; bars are 68 % intervals by the pooled variance) and "
-        "the fitted laws, t {}.",
-        table.note("realizations"), range);
+        "the fitted laws, t {}.{}",
+        table.note("realizations"), range, drawn);
   }
-  return fmt::format("Measured values (points{}) and the fitted laws, t {}.",
-                     measured == "errors" ? "; bars are the errors given" : "", range);
+  return fmt::format("Measured values (points{}) and the fitted laws, t {}.{}",
+                     measured == "errors" ? "; bars are the errors given" : "", range, drawn);
 }
 
 FigurePanel data_panel(const std::vector<TableView>& laws, const std::string& observable) {
@@ -68,15 +74,14 @@ FigurePanel data_panel(const std::vector<TableView>& laws, const std::string& ob
 FigurePanel residual_panel(const std::vector<TableView>& laws, const std::string& observable) {
   const bool scaled =
       std::ranges::any_of(laws.front().values("x_error"), [](double error) { return error > 0; });
-  FigurePanel panel{
-      .title = "Residuals of " + words(observable),
-      .caption =
-          scaled ? "Data minus law, in standard errors of the mean. Neighbouring points are not "
-                   "independent: a trend matters, a single point does not."
-                 : "Data minus law.",
-      .x = t_axis(laws.front()),
-      .y = {scaled ? "(data − law) / standard error" : "data − law"},
-      .rules = {{.y = 0}}};
+  const std::string unit = scaled ? ", in standard errors of the mean. Neighbouring points are not "
+                                    "independent: a trend matters, a single point does not."
+                                  : ".";
+  FigurePanel panel{.title = "Residuals of " + words(observable),
+                    .caption = "Data minus law" + unit + drawn_share(laws.front()),
+                    .x = t_axis(laws.front()),
+                    .y = {scaled ? "(data − law) / standard error" : "data − law"},
+                    .rules = {{.y = 0}}};
   for (std::size_t i = 0; i < laws.size(); ++i) {
     std::vector<double> residuals = laws[i].values("x");
     const std::vector<double> fitted = laws[i].values("fitted"), errors = laws[i].values("x_error");
