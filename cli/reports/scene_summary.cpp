@@ -37,12 +37,13 @@ std::string note(const Table& table, const char* name) {
   return "";
 }
 
-/// Without tests and intervals in parentheses, which --verbose prints.
+/// Without tests and intervals in parentheses, which --verbose prints. Those that follow a space
+/// are meant: AR(1) stays.
 std::string without_parentheses(const std::string& text) {
   std::string kept;
   int depth = 0;
   for (const char c : text) {
-    if (c == '(' && depth++ == 0 && kept.ends_with(' ')) kept.pop_back();
+    if (c == '(' && (depth > 0 || kept.ends_with(' ')) && depth++ == 0) kept.pop_back();
     if (depth == 0) kept += c;
     if (c == ')' && depth > 0) --depth;
   }

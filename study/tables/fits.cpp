@@ -221,7 +221,7 @@ void add_statistics(Table& table, const Fit& fit) {
        "condition of J^T J for columns of the Jacobian J of unit length"},
       {"effective_points", fit.effective_size, "independent points that the residuals are worth"},
       {"weighted_points", fit.weighted_size, "points of equal weight, (sum w)^2 / sum w^2"},
-      {"error_dof", fit.error_dof, "degrees of freedom of error"},
+      {"error_dof", std::max(fit.error_dof, 0.0), "degrees of freedom of error"},
       {"error_factor", fit.error_factor, "(points / effective_points)^(1/2)"},
       {"runs_p", fit.runs.p, "p-value of the runs of signs of the residuals in order of t"}};
   for (const auto& [name, value, meaning] : numbers) {

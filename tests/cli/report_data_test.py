@@ -25,6 +25,11 @@ class Data(Report):
             with self.subTest(look.__name__):
                 look()
 
+    def test_the_summary_is_of_the_density_whatever_else_is_analysed(self):
+        self.jostle("analyse", "everything.h5", "steady", "--observable", "acceptance", "--last", "40")
+        run = self.data(self.page("everything.h5")[0])["files"][0]
+        self.assertEqual(run["summary"], self.run_data["summary"])
+
     def curves(self):
         points = self.run_data["curve_points"]
         self.assertEqual([(one["number"], one["shown"]) for one in points], [(0, True), (1, True), (2, True)])

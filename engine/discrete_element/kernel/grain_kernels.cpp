@@ -25,9 +25,6 @@ using HalfBits = std::int64_t __attribute__((vector_size(32)));
 [[gnu::always_inline]] inline double* numbers_of(SphereRow& row) {
   return &row.x;
 }
-[[gnu::always_inline]] inline const double* numbers_of(const SphereRow& row) {
-  return &row.x;
-}
 [[gnu::always_inline]] inline double* numbers_of(ActionRow& row) {
   return &row.force_x;
 }

@@ -152,17 +152,29 @@ std::string law_line(const DrawnFile& file) {
   return words(observable) + ": " + answers.text();
 }
 
-/// The verdict on the first observable that has this kind of analysis.
+/// The verdict on the observable that the summary describes, else on the first of the density that
+/// has this kind of analysis.
 std::string verdict_line(const DrawnFile& file, const std::string& kind,
                          const std::function<std::string(const TableView&)>& answer_of) {
   const std::vector<TableView> made = file.made_of("analysis", kind);
   if (made.empty()) return "";
+  const auto is_made = [&](const std::string& observable) {
+    return std::ranges::find(made, observable, &TableView::observable) != made.end();
+  };
+  std::string observable = made.front().observable();
+  for (const char* const name : {"mean_height", "corrected_fraction", "bottom_fraction"}) {
+    if (is_made(name)) observable = name;
+  }
+  if (const DrawnColumn* const described = described_column(file);
+      described != nullptr && is_made(described->label.name)) {
+    observable = described->label.name;
+  }
   Answers answers(file);
   for (const TableView& table : made) {
-    if (!table.point() || table.observable() != made.front().observable()) continue;
+    if (!table.point() || table.observable() != observable) continue;
     answers.add(*table.point(), answer_of(table));
   }
-  return words(made.front().observable()) + ": " + answers.text();
+  return words(observable) + ": " + answers.text();
 }
 
 std::string steady_answer(const TableView& table) {
@@ -173,9 +185,10 @@ std::string steady_answer(const TableView& table) {
 }
 
 std::string ageing_answer(const TableView& table) {
-  const double p = table.value("ageing_p");
-  if (!std::isfinite(p)) return "cannot decide";
-  return p < significance_level ? "A(t, t_W) changes with age" : "no change with age found";
+  const std::string verdict = table.note("ageing_verdict");
+  if (verdict.empty() || verdict.starts_with("cannot decide")) return "cannot decide";
+  return table.value("ageing_p") < significance_level ? "A(t, t_W) changes with age"
+                                                      : "no change with age found";
 }
 
 std::string or_hint(const std::string& line, const std::string& command) {
