@@ -14,7 +14,7 @@ from support import BROKEN, JOSTLE, OK, PLAIN, SOURCE, TINY, Case, changed
 OWN, OTHER = 65534, 65533  # users without a name
 RUN_AS = ["setpriv", f"--reuid={OWN}", f"--regid={OWN}", "--clear-groups"]
 CAN_RUN_AS_ANOTHER = os.geteuid() == 0 and shutil.which("setpriv") and subprocess.run(
-    [*RUN_AS, JOSTLE, "--version"], capture_output=True).returncode == 0
+    [*RUN_AS, "sh", "-c", 'exec "$0" --version', JOSTLE], capture_output=True).returncode == 0
 ONE = changed(TINY, sweep={}, realizations=2, protocol=[{"tap": {"dilate": 0.05}, "count": 40}])
 
 # The commands that write "out" in the folder "shared"; {} is a file's ending where the command makes one up.

@@ -86,7 +86,8 @@ class Seal(Case):
         digest = self.digest("file.h5")
         self.change(lambda file: None)
         self.assertIn("sealed again", self.jostle("info", "--reseal", "file.h5").stdout)
-        self.assertEqual(self.path.read_bytes(), self.good)
+        self.assertTrue(self.sealed())  # HDF5 1.14 has moved bytes, of which none counts
+        self.assertEqual(self.digest("file.h5"), digest)
         self.assertIn("nothing to do", self.jostle("info", "--reseal", "file.h5").stdout)
         for command in (["fit", "file.h5", "--observable", "mean_height", "--model", "inverse_log"],
                         ["analyse", "file.h5", "steady", "--observable", "mean_height"],

@@ -51,6 +51,7 @@ class Chroot:
         checkout = self.root / "root/jostle"
         shutil.rmtree(checkout, ignore_errors=True)
         checkout.mkdir(parents=True)
+        checkout.parent.chmod(0o755)  # tests run the program as other users, too
         archive = subprocess.run(["git", "-C", SOURCE, "ls-files", "-z"], check=True, stdout=subprocess.PIPE)
         files = [name for name in archive.stdout.split(b"\0") if (SOURCE / os.fsdecode(name)).is_file()]
         packed = subprocess.run(["tar", "-C", SOURCE, "--null", "--files-from=-", "-c"], check=True,
@@ -60,7 +61,7 @@ class Chroot:
     def sh(self, script, user="root", network=True, accept=(0,)):
         """Runs a script in the user's checkout, with /proc and /dev; returns what it printed."""
         home = "/root" if user == "root" else f"/home/{user}"
-        inside = 'mount -t proc proc "$0/proc" && mount --bind /dev "$0/dev" && exec chroot "$0" "$@"'
+        inside = 'mount -t proc proc "$0/proc" && mount --rbind /dev "$0/dev" && exec chroot "$0" "$@"'
         return run("unshare", "--mount", *([] if network else ["--net"]), "bash", "-c", inside, self.root,
                    "/usr/sbin/runuser", "-u", user, "--", "/usr/bin/env", "-i", f"HOME={home}", "LANG=C.UTF-8",
                    "PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
