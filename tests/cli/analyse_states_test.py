@@ -25,6 +25,8 @@ class States(Analysed):
         left_out = [np.log(np.delete(v[0], r, 1).var()) for r in range(3)]
         logarithm = 3 * np.log(v[0].var()) - 2 * np.mean(left_out)
         self.assertAlmostEqual(values["volume_variance"][0] * spheres / np.exp(logarithm), 1, places=10)
+        for text in values["steady"]:
+            self.assertRegex(text, r"(drifts of|it drifts[^:]*:) [-+\d.e]+ diameter")
         used = [i for i, text in enumerate(values["steady"]) if not text.startswith("not reached")]
         steps = list(zip(used, used[1:]))
         self.assertEqual(values["from_state"], [i for i, _ in steps])

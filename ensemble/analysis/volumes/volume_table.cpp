@@ -96,7 +96,9 @@ void add_states(const Column& observable, const std::string& control, const std:
     first.push_back(state.first_tap);
     last.push_back(state.last_tap);
     strengths.push_back(state.strength);
-    steady.push_back(state.steady.statement());
+    SteadyState with_units = state.steady;
+    with_units.trend.units = observable.units;
+    steady.push_back(with_units.statement());
     means.push_back(mean_of(state.observable));
     variances.push_back(variance_of(state.observable));
     Jackknifed volume = mean_of(state.volumes);
