@@ -1,3 +1,5 @@
+// Settings of structure without measuring: all parts, those that need equal spheres, the default
+// region.
 #include <algorithm>
 #include <tuple>
 

@@ -1,3 +1,4 @@
+// The commands of jostle, in the order of its help.
 #include "cli/commands/commands.hpp"
 #include "cli/commands/program.hpp"
 

@@ -32,8 +32,8 @@ std::vector<std::uint32_t> complete_realizations(const TapRows& rows) {
   return complete;
 }
 
-// Describes how the data constrain one parameter; empty where they constrain it well, and of a
-// scale, whose limits are those beside a held B, where both exist.
+// Describes how the data constrain one parameter; empty where they constrain it well. The limits of
+// a scale presume the held B: if both exist, nothing is stated.
 std::string statement(const char* name, const LogEstimate& estimate, bool is_scale = false) {
   const bool has_lower = estimate.low_95 > 0, has_upper = std::isfinite(estimate.high_95);
   if (has_lower && has_upper) {

@@ -1,3 +1,4 @@
+// The range of partial g(r): what is asked of a scene before anything is measured.
 #include <algorithm>
 #include <cmath>
 #include <string>

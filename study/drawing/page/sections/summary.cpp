@@ -152,23 +152,20 @@ std::string law_line(const DrawnFile& file) {
   return words(observable) + ": " + answers.text();
 }
 
-/// The verdict on the observable that the summary describes, else on the first of the density that
-/// has this kind of analysis.
+/// The verdict on the observable that the summary describes. If it has no such analysis, that on
+/// another fraction or the mean height, else on the first observable that has one.
 std::string verdict_line(const DrawnFile& file, const std::string& kind,
                          const std::function<std::string(const TableView&)>& answer_of) {
   const std::vector<TableView> made = file.made_of("analysis", kind);
   if (made.empty()) return "";
-  const auto is_made = [&](const std::string& observable) {
-    return std::ranges::find(made, observable, &TableView::observable) != made.end();
-  };
-  std::string observable = made.front().observable();
-  for (const char* const name : {"mean_height", "corrected_fraction", "bottom_fraction"}) {
-    if (is_made(name)) observable = name;
+  std::vector<std::string> wanted = {"bottom_fraction", "corrected_fraction", "mean_height"};
+  if (const DrawnColumn* const described = described_column(file)) {
+    wanted.insert(wanted.begin(), described->label.name);
   }
-  if (const DrawnColumn* const described = described_column(file);
-      described != nullptr && is_made(described->label.name)) {
-    observable = described->label.name;
-  }
+  const auto found = std::ranges::find_if(wanted, [&](const std::string& name) {
+    return std::ranges::find(made, name, &TableView::observable) != made.end();
+  });
+  const std::string observable = found == wanted.end() ? made.front().observable() : *found;
   Answers answers(file);
   for (const TableView& table : made) {
     if (!table.point() || table.observable() != observable) continue;
