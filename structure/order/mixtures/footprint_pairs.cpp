@@ -1,6 +1,7 @@
 #include "structure/order/mixtures/footprint_pairs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -81,13 +82,22 @@ class DisplacementsAlong {
   std::vector<double> cumulative_;
 };
 
+/// Ends of the strips across a disc of radius 1: narrower where they change fast.
+std::array<double, 80> strip_ends() {
+  std::array<double, 80> ends;
+  for (std::size_t k = 0; k < ends.size(); ++k)
+    ends[k] = std::sin(0.5 * std::numbers::pi * static_cast<double>(k + 1) /
+                       static_cast<double>(ends.size()));
+  return ends;
+}
+
 /// Probability that a displacement from (0, 0) is at most `radius` long: over strips across x.
 double within_disc(const DisplacementsAlong& x, const DisplacementsAlong& y, double radius) {
-  constexpr int n_strips = 80;  // narrower where the ends of the strips change fast
+  static const auto ends = strip_ends();
   const double most = std::min(radius, x.most());
   double sum = 0, begin = 0, last = 0;
-  for (int k = 1; k <= n_strips; ++k) {
-    const double end = most * std::sin(0.5 * std::numbers::pi * k / n_strips);
+  for (const double relative_end : ends) {
+    const double end = most * relative_end;
     const double up_to = x.probability(end), middle = 0.5 * (begin + end);
     sum +=
         (up_to - last) * y.probability(std::sqrt(std::max(0.0, radius * radius - middle * middle)));
