@@ -69,7 +69,7 @@ void try_forgeries(std::size_t kind, int n) {
 }  // namespace
 
 TEST_CASE("a forged results file is refused or used, and nothing else") {
-  try_forgeries(GENERATE(range(std::size_t{0}, n_forgeries, std::size_t{4})), few);
+  try_forgeries(GENERATE(range(std::size_t{0}, n_forgeries, std::size_t{12})), few);
 }
 
 TEST_CASE("a results file forged in any way is refused or used, and nothing else", "[slow]") {

@@ -177,7 +177,11 @@ TEST_CASE("a bed continues from any step of a tap as if it had not been stopped"
   }
 }
 
-TEST_CASE("the ledger of a tap closes, and better as the step shrinks") {
+TEST_CASE("the ledger of a tap closes to a thousandth") {
+  CHECK(missing_of_tap({6, 6}, 300, 12, WaltonBraun{}, 1) < 1e-3);
+}
+
+TEST_CASE("the ledger of a tap closes, and better as the step shrinks", "[slow]") {
   const PeriodicBox box{6, 6};
   const auto missing = [&](const ContactLaw& law, double finer) {
     return missing_of_tap(box, 300, 12, law, finer);

@@ -123,8 +123,7 @@ TEST_CASE("Realizations with gaps: intervals hold the truth at their stated rate
   check(kww, {10, 0, 0, Missing::drop_out}, 15);
 }
 
-TEST_CASE("Six realizations, of which half leave, with a memory of half the curve",
-          "[statistics]") {
+TEST_CASE("Six realizations, of which half leave, with a memory of half the curve", "[slow]") {
   // Less two standard errors of 300 ensembles. By influences of small changes of weight 91 %.
   constexpr int ensembles = 300;
   const double least = 0.95 - 2 * std::sqrt(0.95 * 0.05 / ensembles);

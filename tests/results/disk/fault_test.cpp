@@ -106,31 +106,9 @@ void kill_while_going_on(long stride) {
   }
 }
 
-}  // namespace
-
-// The disk after call n is the disk before call n + 1, so that killing before every
-// call and after the last one is killing before and after every call.
-TEST_CASE("killed before, within or after any write, fsync, rename or removal, nothing is lost",
-          "[slow]") {
-  kill_at_calls(1);
-}
-
-TEST_CASE(
-    "killed before, within or after some writes, fsyncs, renames and removals, nothing is lost") {
-  kill_at_calls(7);
-}
-
-TEST_CASE("killed at any call while it continues from a folded file, nothing is lost", "[slow]") {
-  kill_while_going_on(1);
-}
-
-TEST_CASE("killed while it continues from a folded file, nothing is lost") {
-  kill_while_going_on(7);
-}
-
-TEST_CASE("a full disk is reported with its path, and the run continues once there is room") {
+void fill_disk_at_calls(long stride) {
   const auto [calls, digest] = undisturbed();
-  for (long call = 1; call <= calls; call += 2) {
+  for (long call = 1; call <= calls; call += stride) {
     CAPTURE(call, calls);
     const Place place;
     const Ending ending = work_with_fault(place, "no_space", call);
@@ -143,6 +121,36 @@ TEST_CASE("a full disk is reported with its path, and the run continues once the
                Contains("No space left on device") && Contains(place.path));
     check_recovery(place, digest);
   }
+}
+
+}  // namespace
+
+// The disk after call n is the disk before call n + 1, so that killing before every
+// call and after the last one is killing before and after every call.
+TEST_CASE("killed before, within or after any write, fsync, rename or removal, nothing is lost",
+          "[slow]") {
+  kill_at_calls(1);
+}
+
+TEST_CASE(
+    "killed before, within or after some writes, fsyncs, renames and removals, nothing is lost") {
+  kill_at_calls(13);
+}
+
+TEST_CASE("killed at any call while it continues from a folded file, nothing is lost", "[slow]") {
+  kill_while_going_on(1);
+}
+
+TEST_CASE("killed while it continues from a folded file, nothing is lost") {
+  kill_while_going_on(13);
+}
+
+TEST_CASE("a full disk is reported with its path, and the run continues once there is room") {
+  fill_disk_at_calls(13);
+}
+
+TEST_CASE("a disk that is full at every other call is reported, and the run continues", "[slow]") {
+  fill_disk_at_calls(2);
 }
 
 TEST_CASE("a failing fsync is not taken for success") {

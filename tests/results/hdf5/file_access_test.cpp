@@ -10,7 +10,7 @@ using namespace jostle;
 
 // The largest number of realizations of a scene. Where their names, 44 MB, find no room in HDF5's
 // cache they are read and written again for each: hours.
-TEST_CASE("A group of a million members keeps its names in the cache, written and read") {
+TEST_CASE("A group of a million members keeps its names in the cache, written and read", "[slow]") {
   const TemporaryFolder folder;
   const std::string path = folder / "million.h5";
   constexpr int members = 1'000'000;

@@ -53,15 +53,16 @@ double density_in_tube(const Packing& packing, double width, std::size_t i, std:
   const double a = half_width(width, sizes.radius(i)), b = half_width(width, sizes.radius(j));
   const bool is_one_kind = sizes.kind(i) == sizes.kind(j);
   const double turned = 2 * pi * random.uniform();
+  std::array<std::array<double, 2>, 16> ways;  // evenly spread displacements of length d
+  for (std::size_t way = 0; way < ways.size(); ++way) {
+    const double azimuth = turned + 2 * pi * static_cast<double>(way) / ways.size();
+    ways[way] = {d * std::cos(azimuth), d * std::sin(azimuth)};
+  }
   const auto leads_in = [&](double start, double radius) {
-    constexpr int n_ways = 16;
     double n_inside = 0;
-    for (int way = 0; way < n_ways; ++way) {
-      const double azimuth = turned + 2 * pi * way / n_ways;
-      n_inside +=
-          std::hypot(start + d * std::cos(azimuth), d * std::sin(azimuth)) <= radius ? 1 : 0;
-    }
-    return n_inside / n_ways;
+    for (const auto& [x, y] : ways)
+      n_inside += (start + x) * (start + x) + y * y <= radius * radius ? 1 : 0;
+    return n_inside / ways.size();
   };
   double first = 0, second = 0, n = 0, m = 0, of_one = 0;
   for (std::size_t k = 0; k < sizes.size(); ++k) {

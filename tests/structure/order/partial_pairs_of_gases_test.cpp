@@ -108,13 +108,9 @@ Deviations deviations(int n_gases, int n_first, int n_second) {
   return all;
 }
 
-}  // namespace
-
-TEST_CASE("partial g(r) of ideal gases is 1 between walls, in tubes and between plates",
-          "[statistics]") {
+/// g(r) of gases of so many spheres of two sizes.
+void check_gases(int n_gases, unsigned n_first, unsigned n_second) {
   // About 450 bins: 4 standard errors for each, 3 for all but one in a hundred.
-  const auto [n_gases, n_first, n_second] =
-      GENERATE(std::tuple{150, 25, 15}, std::tuple{25, 200, 100});
   const Deviations found = deviations(n_gases, n_first, n_second);
   CAPTURE(n_first, found.n, found.sum / found.n, found.squares / found.n, found.beyond_three);
   CHECK(found.n > 350);
@@ -122,4 +118,16 @@ TEST_CASE("partial g(r) of ideal gases is 1 between walls, in tubes and between 
   CHECK(found.squares / found.n < 1.25);
   // Bins of one gas are correlated: 3 standard errors of a tenth of them.
   CHECK(std::abs(found.sum / found.n) < 3 / std::sqrt(0.1 * found.n));
+}
+
+}  // namespace
+
+TEST_CASE("partial g(r) of ideal gases is 1 between walls, in tubes and between plates",
+          "[statistics]") {
+  check_gases(25, 200, 100);
+}
+
+TEST_CASE("partial g(r) of gases of few spheres is 1 between walls, in tubes and between plates",
+          "[slow]") {
+  check_gases(150, 25, 15);
 }

@@ -141,7 +141,7 @@ TEST_CASE("rejection-free sampling has the law of looking at every trial: Metrop
 }
 
 TEST_CASE("rejection-free sampling has the law of looking at every trial: taps in a tube",
-          "[statistics]") {
+          "[slow]") {
   const Cylinder tube{5};
   compare_taps(settled(tube, 100, PolarMove{}),
                {PolarMove{}, Dilate{0.03}, {MeanHeightStop{3e-5, 100}, 1'000'000}, {1.5, 4.5}},
@@ -152,7 +152,7 @@ TEST_CASE("rejection-free sampling has the law of looking at every trial: taps i
 }
 
 TEST_CASE("rejection-free sampling has the law of looking at every trial: taps between plates",
-          "[statistics]") {
+          "[slow]") {
   const Plates plates{4.5, 4};
   compare_taps(settled(plates, 100, PolarMove{}),
                {PolarMove{}, Dilate{0.03}, {MeanHeightStop{3e-5, 100}, 1'000'000}, {1.5, 4.5}},
@@ -160,7 +160,7 @@ TEST_CASE("rejection-free sampling has the law of looking at every trial: taps b
 }
 
 TEST_CASE("rejection-free sampling has the law of looking at every trial: accepted steps",
-          "[statistics]") {
+          "[slow]") {
   for (const Move& move : {Move{PolarMove{}}, Move{MetropolisMove{0.1}}}) {
     const Packing bed = settled(PeriodicBox{4, 4}, 100, move, 20'000);
     const StepSamples exhaustive = steps_from(bed, move, Sampler::exhaustive, 5000);
