@@ -113,8 +113,8 @@ class Script(Case):
 
     def slow_task(self, *signals, **keywords):
         """A task that gets these signals while it computes: its exit code and what it printed."""
+        self.script("--jobs", 2, "-o", "tiny.sbatch", "--force")  # of a scene whose pilot is short
         self.write(changed(SLOW, name="tiny"))
-        self.script("--jobs", 2, "-o", "tiny.sbatch", "--force")
         process = self.run_task(1, wait=False, **keywords)
         self.addCleanup(process.kill)
         while not (self.folder / "tiny.shards/1.h5").exists():

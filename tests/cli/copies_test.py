@@ -13,7 +13,7 @@ from support import TINY, UNFOLDED, Case, changed
 CRYSTAL = {
     "name": "crystal", "seed": 1, "realizations": 3,
     "container": {"sides": "periodic", "width": [3, 2 * 3 ** 0.5]}, "spheres": 24, "start": {"crystal": "hcp"},
-    "engine": {"discrete_element": {}}, "protocol": [{"tap": {"half_sine": {}}, "count": 40}],
+    "engine": {"discrete_element": {}}, "protocol": [{"tap": {"half_sine": {}}, "count": 32}],
     "observe": ["mean_height"]}
 COPIES = "2 of the 3 realizations repeat the series of another, so 1 realization is used"
 WARNING = "nothing is random in this scene"
@@ -40,12 +40,12 @@ class Copies(Case):
         self.assertIn(WARNING, checked.stdout + checked.stderr)
         ran = self.run_scene(environment=UNFOLDED)
         self.assertIn(WARNING, ran.stdout + ran.stderr)
-        for analysis in (["steady", "--last", "40"], ["spectrum", "--last", "40"],
+        for analysis in (["steady", "--last", "32"], ["spectrum", "--last", "32"],
                          ["ageing", "--waiting-times", "1,5"]):
             table = self.table("crystal.h5", analysis[0], "--observable", "mean_height", *analysis[1:])
             self.assertEqual(table["notes"]["copies"], COPIES, analysis)
             self.assertNotIn("p = 0 ", json.dumps(table["notes"]))
-        steady = self.table("crystal.h5", "steady", "--observable", "mean_height", "--last", "40")
+        steady = self.table("crystal.h5", "steady", "--observable", "mean_height", "--last", "32")
         self.assertEqual(steady["notes"]["realizations"], "1")
         with h5py.File(self.folder / "crystal.h5") as results:
             heights = results["observables/point_0000/mean_height"][()]
@@ -60,7 +60,7 @@ class Copies(Case):
         self.assertEqual((found["notes"], found["realizations"]), ([COPIES + "."], 1))
 
     def test_copies_of_displacements_and_packings_count_once(self):
-        self.write(changed(CRYSTAL, protocol=[{"tap": {"half_sine": {}}, "count": 10}], snapshots={"taps": [0, 10]},
+        self.write(changed(CRYSTAL, protocol=[{"tap": {"half_sine": {}}, "count": 6}], snapshots={"taps": [0, 6]},
                            motion={"origins": [1], "lags": [1, 5]}, structure={"layers": {}}))
         self.run_scene()
         motion = self.table("crystal.h5", "motion")
@@ -78,13 +78,13 @@ class Copies(Case):
             self.assertNotIn("note_copies", results["structure/point_0000/layers"].attrs)
 
     def test_copies_count_once_in_the_table_of_taps_and_its_curve(self):
-        self.write(changed(CRYSTAL, protocol=[{"tap": {"half_sine": {}}, "count": 10}]))
+        self.write(changed(CRYSTAL, protocol=[{"tap": {"half_sine": {}}, "count": 3}]))
         ran = self.run_scene(environment=UNFOLDED).stdout
         shown = self.jostle("info", "crystal.h5", environment=UNFOLDED).stdout
         for text in (ran, shown):
             self.assertIn(COPIES + ".", text)
         # One packing: its height has no error.
-        row = next(line for line in ran.splitlines() if line.split()[:1] == ["10"])
+        row = next(line for line in ran.splitlines() if line.split()[:1] == ["3"])
         self.assertNotIn("(", row)
         catalogue = self.folder / "catalogue.json"
         self.jostle("report", "crystal.h5", "--catalogue", "catalogue.json")
@@ -96,7 +96,7 @@ class Copies(Case):
 
     def test_copies_meet_no_target_precision_and_none_are_added(self):
         target = {"observable": "mean_height", "standard_error": 0.01}
-        self.write(changed(CRYSTAL, protocol=[{"tap": {"half_sine": {}}, "count": 10}],
+        self.write(changed(CRYSTAL, protocol=[{"tap": {"half_sine": {}}, "count": 3}],
                            until={"targets": [target], "at_most": 50}))
         done = self.run_scene(environment=UNFOLDED)
         self.assertIn("3 realizations: target precision NOT reached: standard_error of mean_height is not known "

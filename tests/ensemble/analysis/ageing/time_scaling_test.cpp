@@ -132,6 +132,10 @@ void calibrate(std::uint32_t m, int n) {
 TEST_CASE("mu of ages is found, and both collapses can fail", "[statistics]") {
   fmt::print(heading);
   calibrate(4, 40);
+}
+
+TEST_CASE("mu of ten realizations is found, and both collapses can fail", "[slow]") {
+  fmt::print(heading);
   calibrate(10, 40);
 }
 
