@@ -64,7 +64,7 @@ class Kill(Case):
             self.finish(folder, straight)
 
         self.in_parallel(kill_and_resume,
-                         some([(n, moments.uniform(0, 1)) for n in range(100)], 12))
+                         some([(n, moments.uniform(0, 1)) for n in range(100)], 6))
 
     def faulty_run(self, folder, environment):
         """A run of SHORT, single-threaded so that its calls come in one order; its exit code."""
@@ -98,7 +98,7 @@ class Kill(Case):
         everywhere = [(call, action) for call in range(1, calls + 1)
                       for action in ("kill_before", "kill_after")]
         halfway = [(call, "kill_within") for call in range(1, calls + 1, 5)]
-        self.in_parallel(kill_and_resume, some(everywhere, 20) + some(halfway, 4))
+        self.in_parallel(kill_and_resume, some(everywhere, 10) + some(halfway, 3))
 
     def test_a_disk_that_fills_or_fails_ends_the_run_with_a_message(self):
         straight, _ = self.straight_digest(SHORT)

@@ -94,7 +94,7 @@ TEST_CASE("a disordered packing pressed from 0.60 to 0.64 keeps every sphere apa
   }
 }
 
-TEST_CASE("a crystal tapped 10 000 times never overlaps", "[statistics]") {
+TEST_CASE("a crystal tapped 10 000 times never overlaps", "[slow]") {
   for (const Sampler sampler : {Sampler::exhaustive, Sampler::rejection_free}) {
     for (const Tap& tap : {Tap{Dilate{0.02}}, Tap{Lift{0.25}}}) {
       Plan plan;

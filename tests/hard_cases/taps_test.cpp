@@ -63,7 +63,7 @@ TEST_CASE("taps of 0 never raise the bed") {
   }
 }
 
-TEST_CASE("<Z> is that of the spheres after every one of a million taps", "[statistics]") {
+TEST_CASE("<Z> is that of the spheres after every one of a million taps", "[slow]") {
   Plan plan = plan_of(Dilate{0.02}, 1'000'000);
   plan.n_spheres = 6;
   plan.container = PeriodicBox{2.5, 2.5};

@@ -129,7 +129,7 @@ TEST_CASE("Fitted between walls, a pour is thin at the walls", "[statistics]") {
 }
 
 TEST_CASE("The first tap fills the layers at the walls of a fitted pour, and the next does not",
-          "[statistics]") {
+          "[slow]") {
   // The shipped scene, epsilon = 0.02.
   constexpr std::uint64_t taps = 2;
   const Plan plan = short_plan("philippe-bideau-2001/fig10.json",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Callable
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize, special, stats
 
 LEVEL, POWER = 0.05, 0.8
 AGREES, DISAGREES, UNDECIDED = "agrees", "disagrees", "cannot decide"
@@ -92,7 +92,7 @@ def detectable_shift(dof, level):
     t = stats.t.ppf(1 - level / 2, dof) if np.isfinite(dof) else stats.norm.ppf(1 - level / 2)
 
     def missing(shift):
-        found = stats.norm.sf(t * ratio - shift) + stats.norm.cdf(-t * ratio - shift)
+        found = special.ndtr(shift - t * ratio) + special.ndtr(-t * ratio - shift)
         return POWER - found.mean()
     return float(optimize.brentq(missing, 0, 10 * t, xtol=1e-4))
 
