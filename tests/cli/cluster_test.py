@@ -113,7 +113,7 @@ class Script(Case):
 
     def slow_task(self, *signals, **keywords):
         """A task that gets these signals while it computes: its exit code and what it printed."""
-        self.script("--jobs", 2, "-o", "tiny.sbatch", "--force")  # of a scene whose pilot is short
+        self.script("--jobs", 2, "-o", "tiny.sbatch", "--force")  # TINY has a short pilot
         self.write(changed(SLOW, name="tiny"))
         process = self.run_task(1, wait=False, **keywords)
         self.addCleanup(process.kill)
