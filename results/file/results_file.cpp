@@ -114,6 +114,15 @@ void ResultsFile::Impl::rest() {
   file_ = Hdf5Handle();
 }
 
+RealizationSummary ResultsFile::Impl::summary(RealizationId id) {
+  const PointTables& of_point = tables(id.point);
+  RealizationSummary summary{.id = id, .reason = of_point.reasons.at(id.realization)};
+  summary.status = static_cast<RealizationStatus>(of_point.statuses.at(id.realization));
+  summary.rows = of_point.rows.at(id.realization);
+  summary.work = of_point.work.at(id.realization);
+  return summary;
+}
+
 PointTables ResultsFile::Impl::read_tables(std::uint32_t point) const {
   PointTables tables;
   tables.point = point;
@@ -192,15 +201,18 @@ std::vector<RealizationSummary> ResultsFile::realizations(Realizations selection
       for (std::uint32_t r = 0; r < study().realizations; ++r) {
         if (selection == Realizations::of_its_share && !in_share(shard(), study(), {p, r}))
           continue;
-        RealizationSummary summary{.id = {p, r}, .reason = {}};
-        const PointTables& tables = impl_->tables(p);
-        summary.status = static_cast<RealizationStatus>(tables.statuses.at(r));
-        summary.rows = tables.rows.at(r);
-        summary.reason = tables.reasons.at(r);
-        summary.work = tables.work.at(r);
-        all.push_back(summary);
+        all.push_back(impl_->summary({p, r}));
       }
     }
+    return all;
+  });
+}
+
+std::vector<RealizationSummary> ResultsFile::realizations_at(std::uint32_t point) const {
+  return naming_file(impl_->path, [&] {
+    std::vector<RealizationSummary> all;
+    for (std::uint32_t r = 0; r < study().realizations; ++r)
+      all.push_back(impl_->summary({point, r}));
     return all;
   });
 }

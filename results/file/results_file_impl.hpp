@@ -66,6 +66,8 @@ class ResultsFile::Impl {
     return *cached_;
   }
 
+  RealizationSummary summary(RealizationId id);
+
   /// [n_columns] of [n, n_realizations]: the block of rows that `row` is in.
   const std::vector<std::vector<double>>& row_block(std::uint32_t point, std::uint64_t row) {
     const std::uint64_t first = row / block_rows(point) * block_rows(point);

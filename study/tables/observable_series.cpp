@@ -61,8 +61,8 @@ Column label_named(const ResultsFile& file, std::uint32_t point, const std::stri
 ObservableSeries::ObservableSeries(const ResultsFile& file, std::uint32_t point,
                                    const std::string& observable)
     : file_(file), point_(point), label_(label_named(file, point, observable)) {
-  for (const RealizationSummary& summary : file.realizations()) {
-    if (summary.id.point != point || !is_usable(summary)) continue;
+  for (const RealizationSummary& summary : file.realizations_at(point)) {
+    if (!is_usable(summary)) continue;
     n_rows_ = used_.empty() ? summary.rows : std::min(n_rows_, summary.rows);
     used_.push_back(summary.id.realization);
     reached_.push_back(summary.rows);
@@ -97,8 +97,8 @@ Repetitions repetitions(const ResultsFile& file, std::uint32_t point,
   const ObservableSeries series(file, point, observable);
   Repetitions found{.text = series.copies(), .leave_one = series.realizations().size() == 1};
   if (found.text.empty()) return found;
-  for (const RealizationSummary& summary : file.realizations()) {
-    if (summary.id.point == point && is_usable(summary) &&
+  for (const RealizationSummary& summary : file.realizations_at(point)) {
+    if (is_usable(summary) &&
         !std::ranges::binary_search(series.realizations(), summary.id.realization)) {
       found.realizations.push_back(summary.id.realization);
     }

@@ -152,9 +152,8 @@ constexpr std::size_t most_snapshot_points = 24, most_snapshot_realizations = 64
 
 std::vector<std::uint32_t> realizations_with_taps(const ResultsFile& file, std::uint32_t point) {
   std::vector<std::uint32_t> begun;
-  for (const RealizationSummary& realization : file.realizations()) {
-    if (realization.id.point == point && realization.rows > 0 &&
-        realization.status != RealizationStatus::failed)
+  for (const RealizationSummary& realization : file.realizations_at(point)) {
+    if (realization.rows > 0 && realization.status != RealizationStatus::failed)
       begun.push_back(realization.id.realization);
   }
   return begun;

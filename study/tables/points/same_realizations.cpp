@@ -76,9 +76,8 @@ Physics physics_of(const StudyPoint& studied, const Json& scene, Streams streams
 
 std::vector<std::uint32_t> begun(const ResultsFile& file, std::uint32_t point) {
   std::vector<std::uint32_t> numbers;
-  for (const RealizationSummary& realization : file.realizations())
-    if (realization.id.point == point && realization.rows > 0)
-      numbers.push_back(realization.id.realization);
+  for (const RealizationSummary& realization : file.realizations_at(point))
+    if (realization.rows > 0) numbers.push_back(realization.id.realization);
   std::ranges::sort(numbers);
   return numbers;
 }
