@@ -211,7 +211,7 @@ void HeldFits::search(HeldFit& fit) {
     agreeing =
         candidate.z < fit.z - noticeable_ ? 0 : agreeing + (candidate.z < fit.z + noticeable_);
     improve(fit, candidate);
-    if (agreeing == 1) break;
+    if (agreeing == 1 || (budget && budget->spent())) break;
   }
 }
 

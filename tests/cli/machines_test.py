@@ -56,7 +56,8 @@ class Machines(Case):
                 self.write(scene)
                 digests = {self.digest_with({}), self.digest_with(without_variants)}
                 for name in instruction_sets():
-                    digests.add(self.digest_with({"JOSTLE_INSTRUCTION_SET": name, **without_variants}))
+                    own = {"JOSTLE_INSTRUCTION_SET": name}
+                    digests |= {self.digest_with(own), self.digest_with({**own, **without_variants})}
                 self.assertEqual(len(digests), 1)
                 seen |= digests
         self.assertEqual(len(seen), len(SCENES))

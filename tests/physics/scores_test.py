@@ -1,5 +1,6 @@
 """Every status word of docs/validation is redone from the reduced data, and its tests have the size and power that
 they promise, on synthetic beds with the measured variances."""
+import os
 import pathlib
 import tempfile
 from unittest import mock
@@ -15,7 +16,7 @@ from scores import (COMPATIBLE, DECIDED, NOT, QUALITATIVE, REPRODUCED, STATUS, U
                     counts, false_discoveries, of_interval, of_printed, positive, status_of_figure, within)
 from verdicts import LEVEL, POWER, Estimate
 
-ENSEMBLES = 300
+ENSEMBLES = 1000 if os.environ.get("JOSTLE_EVERY") else 300
 
 
 def check(holds, *found):

@@ -13,7 +13,7 @@ from runs import Table
 from verdicts import (AGREES, DISAGREES, LEVEL, POWER, UNDECIDED, Estimate, are_positive,
                       are_within, detectable, holm, is_positive, is_within, judge, of_interval)
 
-ENSEMBLES = 600 if os.environ.get("JOSTLE_EVERY") else 100
+ENSEMBLES = 600 if os.environ.get("JOSTLE_EVERY") else 200
 
 
 def check(holds, *said):

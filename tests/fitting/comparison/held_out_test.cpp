@@ -193,8 +193,8 @@ LawComparison constant_against_line(const Curve& curve) {
   return compare_laws({{&constant, &a}, {&line, &b}}, curve);
 }
 
-/// Rates over 20 ensembles of three realizations, little above noise of memory rho, and of six that
-/// are far above.
+/// Rates over 20 ensembles each: three realizations with a signal little above noise of memory rho,
+/// and six with a signal far above it.
 void check_rates(const char* name, double rho) {
   constexpr int ensembles = 20;
   const Truth& truth = truth_of(name);

@@ -142,7 +142,7 @@ void check_verdicts(const std::vector<std::size_t>& all_realizations, int ensemb
   }
 }
 
-/// Rates over 200 ensembles, whose realizations order as memoryless ones do, and with a shape of 3.
+/// Rates over 200 ensembles, for times without memory (shape 1) and of shape 3.
 void check_intervals(const std::vector<std::size_t>& all_realizations) {
   constexpr int ensembles = 200;
   fmt::print(
