@@ -63,8 +63,9 @@ function(jostle_unify target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# jostle_sources(TARGET GROUP SOURCES ...): compiles the sources of a library, with the precompiled headers of a group.
-function(jostle_sources target group)
+# jostle_sources(TARGET GROUP "SEPARATE" SOURCES ...): compiles the sources of a library, with the precompiled headers of
+# a group; those of the list SEPARATE as units of their own.
+function(jostle_sources target group separate)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:jostle_options>)
@@ -80,22 +81,26 @@ function(jostle_sources target group)
   else()
     jostle_precompile(${target} hot ${JOSTLE_COMMON_HEADERS})
   endif()
-  jostle_unify(${target} ${ARGN})
+  set(together ${ARGN})
+  if(separate)
+    list(REMOVE_ITEM together ${separate})
+  endif()
+  jostle_unify(${target} ${together})
 endfunction()
 
 # jostle_library(engine [NOT_HOT] [FIRST_RUN a.cpp ...] SOURCES b.cpp ... [SEPARATE c.cpp ...] PUBLIC jostle_x ...
 # PRIVATE ...): one folder, one library, installed as jostle::engine. FIRST_RUN sources are those that running a scene
 # needs: they are units of their own, also in jostle_engine_first_run, which is not installed, for the program of a
-# first run (cli). SEPARATE sources hold the loops that runs spend their time in: each is a unit of its own, so that
-# the compiler's limits on inlining see that loop alone. Link only what the arrows allow: engine <- structure <-
-# ensemble; config and results use those; study joins them, and cli is its command line.
+# first run (cli). Those of them that SEPARATE names too hold the loops that runs spend their time in: each is a unit
+# of its own, so that the compiler's limits on inlining see that loop alone. Link only what the arrows allow: engine <-
+# structure <- ensemble; config and results use those; study joins them, and cli is its command line.
 function(jostle_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_HOT" "" "FIRST_RUN;SOURCES;SEPARATE;PUBLIC;PRIVATE")
   set(group hot)
   if(arg_NOT_HOT)
     set(group not_hot)
   endif()
-  set(first_run_objects)
+  set(all_sources ${arg_SOURCES})
   if(arg_FIRST_RUN)
     set(first_run jostle_${name}_first_run)
     add_library(${first_run} STATIC EXCLUDE_FROM_ALL ${arg_FIRST_RUN})
@@ -106,16 +111,16 @@ function(jostle_library name)
       target_link_libraries(${first_run} PUBLIC ${library})
     endforeach()
     target_link_libraries(${first_run} PRIVATE ${arg_PRIVATE})
-    jostle_sources(${first_run} ${group} ${arg_FIRST_RUN})
-    set(first_run_objects $<TARGET_OBJECTS:${first_run}>)
+    jostle_sources(${first_run} ${group} "${arg_SEPARATE}" ${arg_FIRST_RUN})
+    list(APPEND all_sources $<TARGET_OBJECTS:${first_run}>)
   endif()
   if(group STREQUAL hot AND (Eigen3::Eigen IN_LIST arg_PUBLIC OR jostle_fitting IN_LIST arg_PUBLIC))
     set(group hot_eigen)
   endif()
-  add_library(jostle_${name} STATIC ${arg_SOURCES} ${arg_SEPARATE} ${first_run_objects})
+  add_library(jostle_${name} STATIC ${all_sources})
   add_library(jostle::${name} ALIAS jostle_${name})
   set_target_properties(jostle_${name} PROPERTIES EXPORT_NAME ${name})
   target_link_libraries(jostle_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
-  jostle_sources(jostle_${name} ${group} ${arg_SOURCES})
+  jostle_sources(jostle_${name} ${group} "${arg_SEPARATE}" ${arg_SOURCES})
   set_property(GLOBAL APPEND PROPERTY jostle_libraries jostle_${name})
 endfunction()

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/commands/commands.hpp"
+#include "cli/first_run/beyond_first_run.hpp"
 #include "cli/reports/effects.hpp"
 #include "cli/tables/durations.hpp"
 #include "cli/tables/text_table.hpp"
@@ -147,18 +148,22 @@ void check(const CheckArguments& arguments) {
   print_pilot(loaded, arguments.threads > 0 ? arguments.threads : available_cpus());
 }
 
+void add_options(Command& command, CheckArguments& arguments) {
+  command.add_option("scene", arguments.scene, "The scene, a JSON file")
+      .required()
+      .offers_files({"json"});
+  command.add_threads(arguments.threads,
+                      "Estimate for so many (default: the CPUs this process may use)");
+  command.add_flag("--no-pilot", arguments.no_pilot,
+                   "Leave out the short trial that time and memory are estimated from");
+}
+
 }  // namespace
 
 void add_check(Command& app, int& code) {
   Command command = app.add_command("check", "Report what a scene means and what it will cost");
   auto arguments = std::make_shared<CheckArguments>();
-  command.add_option("scene", arguments->scene, "The scene, a JSON file")
-      .required()
-      .offers_files({"json"});
-  command.add_threads(arguments->threads,
-                      "Estimate for so many (default: the CPUs this process may use)");
-  command.add_flag("--no-pilot", arguments->no_pilot,
-                   "Leave out the short trial that time and memory are estimated from");
+  add_options(command, *arguments);
   command.footer(
       "Examples:\n"
       "  jostle check scene.json              up to about ten seconds; grains, a minute\n"
@@ -168,6 +173,17 @@ void add_check(Command& app, int& code) {
   command.run([arguments, &code] {
     check(*arguments);
     code = exit_ok;
+  });
+}
+
+void add_check_requests(Command& requests, int& code) {
+  Command command = requests.add_command("check", "Print what a check needs beyond a first run");
+  auto arguments = std::make_shared<CheckArguments>();
+  add_options(command, *arguments);
+  command.run([arguments, &code] {
+    const LoadedScene loaded = load_scene(arguments->scene);
+    code = print_requests(arguments->no_pilot ? std::vector<std::string>{}
+                                              : loops_beyond_first_run(loaded));
   });
 }
 

@@ -9,7 +9,7 @@
 namespace jostle::inline cli {
 
 void add_new(Command& app, int& code);
-/// Without `make_tables`, `run` refuses scenes that request tables.
+/// Without `make_tables`, `run` refuses scenes that the program of a first run cannot run.
 void add_run(Command& app, int& code, SceneTablesMaker* make_tables);
 void add_check(Command& app, int& code);
 void add_cost(Command& app, int& code);
@@ -25,7 +25,9 @@ void add_analyse(Command& app, int& code);
 void add_export(Command& app, int& code);
 void add_structure(Command& app, int& code);
 void add_report(Command& app, int& code);
-/// `requests`: of the program of a first run alone.
+/// `requests run`, `requests check`: of the program of a first run alone.
 void add_requests(Command& app, int& code);
+void add_run_requests(Command& requests, int& code);
+void add_check_requests(Command& requests, int& code);
 
 }  // namespace jostle::inline cli

@@ -11,6 +11,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/files/output_file.hpp"
 #include "cli/files/waiting.hpp"
+#include "cli/first_run/beyond_first_run.hpp"
 #include "cli/options/command_words.hpp"
 #include "cli/reports/next_commands.hpp"
 #include "cli/reports/report.hpp"
@@ -205,13 +206,13 @@ int run_to_end(const RunArguments& arguments, SceneRun& run, const RunSettings& 
   return failures.empty() ? exit_ok : exit_failed_realizations;
 }
 
-/// A program without tables runs only scenes that request none.
-void require_no_tables(const Scene& scene) {
-  const std::vector<std::string> keys = requested_tables(scene);
-  if (keys.empty()) return;
-  throw BadInput(fmt::format(
-      "the scene requests tables ({}), which this program does not make: run it with jostle",
-      joined(keys, ", ")));
+/// The program of a first run refuses scenes that need more than it has.
+void require_first_run(const LoadedScene& loaded) {
+  const std::vector<std::string> needs = beyond_first_run(loaded);
+  if (needs.empty()) return;
+  throw BadInput(
+      fmt::format("the scene needs {}, which this program does not have: run it with jostle",
+                  joined(needs, ", ")));
 }
 
 int run(const RunArguments& arguments, SceneTablesMaker* make_tables) {
@@ -221,7 +222,7 @@ int run(const RunArguments& arguments, SceneTablesMaker* make_tables) {
     log_line("--force with a resume takes over another host's lock, and replaces no file");
   }
   const LoadedScene loaded = load_scene(arguments.scene);
-  if (make_tables == nullptr) require_no_tables(loaded.scene);
+  if (make_tables == nullptr) require_first_run(loaded);
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   RunSettings settings = settings_of(arguments, loaded, threads);
   settings.stop = &stop.flag();
@@ -309,15 +310,12 @@ void add_run(Command& app, int& code, SceneTablesMaker* make_tables) {
   command.run([arguments, make_tables, &code] { code = run(*arguments, make_tables); });
 }
 
-void add_requests(Command& app, int& code) {
-  Command command =
-      app.add_command("requests", "Print the keys of a scene that request tables of its run");
+void add_run_requests(Command& requests, int& code) {
+  Command command = requests.add_command("run", "Print what a run needs beyond a first run");
   auto arguments = std::make_shared<RunArguments>();
   add_options(command, *arguments);
   command.run([arguments, &code] {
-    const std::vector<std::string> keys = requested_tables(load_scene(arguments->scene).scene);
-    if (!keys.empty()) print(joined(keys, ", ") + "\n");
-    code = keys.empty() ? exit_ok : exit_requests;
+    code = print_requests(beyond_first_run(load_scene(arguments->scene)));
   });
 }
 

@@ -49,11 +49,8 @@ void add_keys(const Field<Part, Value, Form>& field, std::vector<std::string>& k
 }
 template <class Part, class Value, class Form>
 void read_field(const Field<Part, Value, Form>& field, const Reader& reader, Part& part) {
-  const auto member = reader.find(std::string(field.key));
-  if (!member) {
-    if (!field.notes.required.empty()) reader.missing(field.key, field.notes.required);
-    return;
-  }
+  const auto member = reader.member(field.key, field.notes.required);
+  if (!member) return;
   if constexpr (is_optional<Value> && !has_absence<Form>) {
     typename Value::value_type value{};
     const bool read = read_value(field.form, *member, value);
@@ -78,15 +75,9 @@ void describe_field(const Field<Part, Value, Form>& field, ObjectSchema& schema,
   std::optional<Json> otherwise;
   if constexpr (!is_optional<Value> || has_absence<Form>) {
     if (field.notes.required.empty()) otherwise = written_default(field.form, Part{}.*field.member);
-    // A value that is written only where it is not the default needs no default in the schema if
-    // that is empty.
-    if (field.notes.unless_default && (*otherwise == Json("") || *otherwise == Json::object()))
-      otherwise.reset();
   }
-  schema.properties[field.key] =
-      described_as(value_schema(field.form, definitions), field.notes.title,
-                   sentence_of(field.text, unit_of(field.form)), otherwise, field.notes.examples);
-  if (!field.notes.required.empty()) schema.required.emplace_back(field.key);
+  schema.add(field.key, field.notes, sentence_of(field.text, unit_of(field.form)),
+             value_schema(field.form, definitions), std::move(otherwise));
 }
 
 template <class Part, class Inner>

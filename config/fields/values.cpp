@@ -177,6 +177,16 @@ std::string sentence_of(std::string_view text, std::string_view unit) {
   return sentence.ends_with('.') ? sentence : sentence + '.';
 }
 
+void ObjectSchema::add(std::string_view key, const Notes& notes, std::string_view text, Json value,
+                       std::optional<Json> otherwise) {
+  // A value that is written only where it is not the default needs no default in the schema if
+  // that is empty.
+  if (notes.unless_default && otherwise && (*otherwise == Json("") || *otherwise == Json::object()))
+    otherwise.reset();
+  properties[key] = described_as(std::move(value), notes.title, text, otherwise, notes.examples);
+  if (!notes.required.empty()) required.emplace_back(key);
+}
+
 Json ObjectSchema::json() const {
   Json schema{{"type", "object"}};
   if (!required.empty()) schema["required"] = required;

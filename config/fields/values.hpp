@@ -135,6 +135,9 @@ struct ObjectSchema {
   std::vector<std::string> required;
   Json rules = Json::object();  // further rules
 
+  /// Adds the schema of a key's value, with its text and its default.
+  void add(std::string_view key, const Notes& notes, std::string_view text, Json value,
+           std::optional<Json> otherwise);
   Json json() const;
 };
 

@@ -37,6 +37,12 @@ bool sound(const std::vector<Fault>& faults, std::string_view pointer) {
                       [&](const Fault& fault) { return is_within(fault.pointer, pointer); });
 }
 
+std::optional<Reader> Reader::member(std::string_view key, std::string_view content) const {
+  std::optional<Reader> found = find(std::string(key));
+  if (!found && !content.empty()) missing(key, content);
+  return found;
+}
+
 void Reader::missing(std::string_view key, std::string_view content) const {
   faults_->push_back({pointer_to(pointer_, key), fmt::format("this key is required: {}", content)});
 }

@@ -18,21 +18,14 @@ constexpr double deepest_possible =
     0.2;  // largest possible overlap of spheres that press on each other
 
 GrainKernels kernels_of(GrainLaw law, GrainSizes sizes, InstructionSet set) {
-  struct Entry {
-    InstructionSet set;
-    GrainKernels (*kernels)(GrainLaw, GrainSizes);
-  };
-  constexpr Entry entries[] = {
+  constexpr CompiledFor<GrainKernels(GrainLaw, GrainSizes)> compiled[] = {
       {InstructionSet::baseline, baseline::grain_kernels},
 #ifdef JOSTLE_X86_KERNELS
       {InstructionSet::avx2, avx2::grain_kernels},
       {InstructionSet::avx512, avx512::grain_kernels},
 #endif
   };
-  for (const Entry& entry : entries) {
-    if (entry.set == set) return entry.kernels(law, sizes);
-  }
-  throw_not_compiled_in(set);
+  return function_for(set, compiled)(law, sizes);
 }
 
 Vec3 spin_of(const SphereRow& row, double spin_z) {

@@ -2,9 +2,21 @@
 
 #include <stdexcept>
 
+#include "engine/kernel_sets.hpp"
 #include "engine/monte_carlo/kernel/loop_choice.hpp"
 
 namespace jostle::inline engine {
+
+ProposalKernels proposal_kernels_for(InstructionSet set) {
+  constexpr CompiledFor<ProposalKernels()> compiled[] = {
+      {InstructionSet::baseline, baseline::proposal_kernels},
+#ifdef JOSTLE_X86_KERNELS
+      {InstructionSet::avx2, avx2::proposal_kernels},
+      {InstructionSet::avx512, avx512::proposal_kernels},
+#endif
+  };
+  return function_for(set, compiled)();
+}
 
 std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Move& move,
                                            StreamKey key, InstructionSet set, Sampler sampler,
@@ -13,10 +25,10 @@ std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Mov
   if (const auto fault = sampler_fault(sampler, move, container)) {
     throw std::invalid_argument(*fault);
   }
-  const Kernels kernels = kernels_for(set);
-  if (sizes == SphereSizes::several)
-    return make_loop_for_sizes(container, move, key, kernels, sampler);
-  return make_loop<EqualSpheres>(container, move, key, kernels, sampler);
+  if (sizes == SphereSizes::several) return make_loop_for_sizes(container, move, key, set, sampler);
+  if (sampler == Sampler::rejection_free)
+    return make_rejection_free_loop(container, move, key, set);
+  return make_exhaustive_loop<EqualSpheres>(container, move, key, set);
 }
 
 }  // namespace jostle::inline engine

@@ -20,6 +20,15 @@ REQUESTING = {
     "motion": {"lags": [1, 2]},
     "structure": {"profile": {}},
 }
+SKIPPING = TINY["relax"] | {"sampler": "skipping"}
+# Scenes that need a loop of jostle alone, by what that is.
+LOOPS = {
+    "discrete elements": {key: value for key, value in TINY.items() if key != "relax"}
+                         | {"engine": {"discrete_element": {}}},
+    "spheres of several sizes": changed(TINY, spheres=[{"name": "one", "diameter": 1, "count": 30},
+                                                       {"name": "other", "diameter": 1.2, "count": 10}]),
+    "the sampler skipping": changed(TINY, relax=SKIPPING),
+}
 
 
 class FirstRun(Case):
@@ -46,19 +55,48 @@ class FirstRun(Case):
                 self.write(changed(TINY, **{key: value}))
                 self.jostle("check", "scene.json", "--no-pilot")
                 refused = self.first_run("run", "scene.json", expect=BAD_INPUT)
-                self.assertIn(f"the scene requests tables ({key}), which this program does not make", refused.stderr)
-                self.assertEqual(self.first_run("requests", "scene.json", expect=REQUESTS).stdout, f"{key}\n")
+                self.assertIn(f"the scene needs tables ({key}), which this program does not have", refused.stderr)
+                self.assertEqual(self.requests("run", "scene.json"), f"tables ({key})\n")
+                self.assertEqual(self.requests("check", "scene.json"), "")
                 self.assertEqual(self.files(), ["scene.json"])
 
-    def test_requests_takes_the_options_of_run(self):
+    def test_scenes_that_need_other_loops_are_refused_before_anything_is_written(self):
+        for words, scene in LOOPS.items():
+            with self.subTest(words=words):
+                self.write(scene)
+                self.jostle("check", "scene.json", "--no-pilot")
+                refused = self.first_run("run", "scene.json", expect=BAD_INPUT)
+                self.assertIn(f"the scene needs {words}, which this program does not have", refused.stderr)
+                pilot = self.first_run("check", "scene.json", expect=BAD_INPUT)
+                self.assertIn(f"this program has no loop for {words}: use jostle", pilot.stderr)
+                self.first_run("check", "scene.json", "--no-pilot")
+                self.assertEqual(self.requests("run", "scene.json"), f"{words}\n")
+                self.assertEqual(self.requests("check", "scene.json"), f"{words}\n")
+                self.assertEqual(self.requests("check", "scene.json", "--no-pilot"), "")
+                self.assertEqual(self.files(), ["scene.json"])
+
+    def test_a_loop_that_one_sweep_point_or_the_start_needs_is_needed(self):
+        self.write(changed(TINY, sweep={"/relax/sampler": ["exhaustive", "skipping"]}))
+        self.assertEqual(self.requests("run", "scene.json"), "the sampler skipping\n")
+        self.write(changed(TINY, start={"random_settle": {}}, relax_start=SKIPPING))
+        self.assertEqual(self.requests("run", "scene.json"), "the sampler skipping\n")
+
+    def requests(self, *arguments):
+        done = subprocess.run([FIRST_RUN, "requests", *arguments], cwd=self.folder, env=PLAIN, text=True,
+                              capture_output=True)
+        self.assertEqual((done.returncode, done.stderr), (REQUESTS if done.stdout else OK, ""))
+        return done.stdout
+
+    def test_requests_takes_the_options_of_its_command(self):
         self.write(TINY)
-        self.assertEqual(self.first_run("requests", "-o", "x.h5", "scene.json", "--threads", 1).stdout, "")
+        self.assertEqual(self.requests("run", "-o", "x.h5", "scene.json", "--threads", "1"), "")
+        self.assertEqual(self.requests("check", "scene.json", "--threads", "1"), "")
         self.write(changed(TINY, fits=[FIT], structure={"profile": {}}))
-        self.assertEqual(self.first_run("requests", "scene.json", expect=REQUESTS).stdout, "fits, structure\n")
+        self.assertEqual(self.requests("run", "scene.json"), "tables (fits, structure)\n")
 
     def test_jostle_has_no_command_of_the_other_program(self):
         self.write(TINY)
-        self.jostle("requests", "scene.json", expect=BAD_INPUT)
+        self.jostle("requests", "run", "scene.json", expect=BAD_INPUT)
         self.first_run("fit", "scene.json", expect=BAD_INPUT)
 
 
@@ -118,12 +156,20 @@ class Dev(Case):
         self.assertEqual(self.dev("run", "scene.json", "-o", "again.h5")[0], ["jostle"])
         self.assertEqual(self.digest("again.h5"), digest)
 
-    def test_a_scene_that_requests_tables_is_run_by_jostle(self):
+    def test_a_scene_that_needs_more_is_run_by_jostle(self):
         self.write(changed(TINY, structure={"profile": {}}))
         built, done = self.dev("run", "scene.json")
         self.assertEqual(built, ["jostle_first_run", "jostle"])
-        self.assertIn("dev: the scene requests tables (structure), which the rest of jostle makes", done.stderr)
+        self.assertIn("dev: the scene needs tables (structure), which the rest of jostle has", done.stderr)
         self.assertIn("structure/point_0000/profile", self.info("tiny.h5")["tables"])
+
+    def test_a_pilot_that_needs_more_is_made_by_jostle(self):
+        self.write(LOOPS["the sampler skipping"])
+        self.assertEqual(self.dev("check", "scene.json", "--no-pilot")[0], ["jostle_first_run"])
+        built, done = self.dev("check", "scene.json")
+        self.assertEqual(built, ["jostle_first_run", "jostle"])
+        self.assertIn("dev: the scene needs the sampler skipping, which the rest of jostle has", done.stderr)
+        self.assertIn("pilot of", done.stdout)
 
     def test_faults_of_a_scene_need_no_other_program(self):
         self.write(changed(TINY, sphere=3))

@@ -1,77 +1,49 @@
 #pragma once
 
 #include <memory>
-#include <stdexcept>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
-#include "engine/monte_carlo/kernel/kernel_table.hpp"
 #include "engine/monte_carlo/kernel/typed_trial_loop.hpp"
-#include "engine/monte_carlo/rejection_free/rejection_free_loop.hpp"
 
-// Chooses the typed loop for a container, a move and a sampler.
+// Chooses the typed loop for a container and a move. Loops of equal spheres that look at every
+// trial are compiled with make_trial_loop(), others apart: they take as long to compile, and a
+// first run needs none of them.
 namespace jostle::inline engine {
 
-template <class Spheres>
-struct MakeExhaustive {
-  StreamKey key;
-  Kernels kernels;
-
-  template <class Box, class Policy>
-  std::unique_ptr<TrialLoop> operator()(const Box& box, Policy move) const {
-    return std::make_unique<TypedTrialLoop<Box, Policy, Spheres>>(box, std::move(move), key,
-                                                                  kernels.proposals);
-  }
-};
-
-template <class Spheres>
-struct MakeRejectionFree {
-  StreamKey key;
-  Kernels kernels;
-
-  template <class Box>
-  std::unique_ptr<TrialLoop> operator()(const Box& box, const Polar& move) const {
-    return make<PolarDirections>(box, move);
-  }
-  template <class Box>
-  std::unique_ptr<TrialLoop> operator()(const Box& box, const ZeroTemperature& move) const {
-    return make<CubicDirections>(box, move);
-  }
-  template <class Box, class Policy>
-  std::unique_ptr<TrialLoop> operator()(const Box&, const Policy&) const {
-    throw std::invalid_argument(
-        "the rejection-free sampler has no bounds for this move: use the exhaustive sampler");
-  }
-
- private:
-  template <class Directions, class Box, class Policy>
-  std::unique_ptr<TrialLoop> make(const Box& box, const Policy& move) const {
-    return std::make_unique<RejectionFreeLoop<Box, Directions, Spheres>>(
-        box, move, key, kernels.proposals, kernels.rejection_free);
-  }
-};
-
-template <class Spheres>
-std::unique_ptr<TrialLoop> make_loop(const Container& container, const Move& move, StreamKey key,
-                                     const Kernels& kernels, Sampler sampler) {
+/// make(container, policy), both with their types.
+template <class Make>
+std::unique_ptr<TrialLoop> choose_loop(const Container& container, const Move& move, StreamKey key,
+                                       const Make& make) {
   using Loop = std::unique_ptr<TrialLoop>;
-  const auto choose = [&](const auto& make) {
-    return std::visit(
-        [&](const auto& box, const auto& chosen) {
-          using Box = std::decay_t<decltype(box)>;
-          return with_policy<Loop, Box>(
-              chosen, key, [&](auto policy) -> Loop { return make(box, std::move(policy)); });
-        },
-        container, move);
-  };
-  return sampler == Sampler::exhaustive ? choose(MakeExhaustive<Spheres>{key, kernels})
-                                        : choose(MakeRejectionFree<Spheres>{key, kernels});
+  return std::visit(
+      [&](const auto& box, const auto& chosen) {
+        using Box = std::decay_t<decltype(box)>;
+        return with_policy<Loop, Box>(
+            chosen, key, [&](auto policy) -> Loop { return make(box, std::move(policy)); });
+      },
+      container, move);
 }
 
-/// make_loop<SeveralSizes>, compiled apart: it takes as long as the loops of equal spheres.
+template <class Spheres>
+std::unique_ptr<TrialLoop> make_exhaustive_loop(const Container& container, const Move& move,
+                                                StreamKey key, InstructionSet set) {
+  const ProposalKernels kernels = proposal_kernels_for(set);
+  return choose_loop(
+      container, move, key,
+      [&]<class Box, class Policy>(const Box& box, Policy policy) -> std::unique_ptr<TrialLoop> {
+        return std::make_unique<TypedTrialLoop<Box, Policy, Spheres>>(box, std::move(policy), key,
+                                                                      kernels);
+      });
+}
+
+/// A loop for equal spheres, with the rejection-free sampler.
+std::unique_ptr<TrialLoop> make_rejection_free_loop(const Container& container, const Move& move,
+                                                    StreamKey key, InstructionSet set);
+
+/// A loop for several sizes, with either sampler.
 std::unique_ptr<TrialLoop> make_loop_for_sizes(const Container& container, const Move& move,
-                                               StreamKey key, const Kernels& kernels,
-                                               Sampler sampler);
+                                               StreamKey key, InstructionSet set, Sampler sampler);
 
 }  // namespace jostle::inline engine

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "engine/instruction_set.hpp"
+
 // Trial displacements, made in batches so that they vectorise. The proposal of a trial is a
 // function of its stream and its number alone; every instruction set makes the same bits.
 namespace jostle::inline engine {
@@ -43,5 +45,8 @@ ProposalKernels proposal_kernels();
 namespace avx512 {
 ProposalKernels proposal_kernels();
 }
+
+/// Throws std::invalid_argument where none are compiled for `set`.
+ProposalKernels proposal_kernels_for(InstructionSet set);
 
 }  // namespace jostle::inline engine

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/instruction_set.hpp"
+
 // The vectorised parts of rejection-free sampling: how far a sphere may go in every direction, and
 // the random numbers of candidates. Every instruction set makes the same bits.
 namespace jostle::inline engine {
@@ -150,5 +152,8 @@ namespace avx512 {
 void draw_candidates(std::uint64_t key, std::uint64_t first, int n_sectors, CandidateBatch& batch);
 RejectionFreeKernels rejection_free_kernels();
 }
+
+/// Throws std::invalid_argument where none are compiled for `set`.
+RejectionFreeKernels rejection_free_kernels_for(InstructionSet set);
 
 }  // namespace jostle::inline engine

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "engine/bed/philox.hpp"
-#include "engine/monte_carlo/kernel/kernel_table.hpp"
 #include "engine/monte_carlo/theta_table.hpp"
 #include "engine/monte_carlo/trial_loop.hpp"
 
@@ -115,5 +114,5 @@ TEST_CASE("every instruction set proposes the same bits") {
       REQUIRE(std::memcmp(own.get(), second.get(), sizeof(ProposalBatch)) == 0);
     }
   };
-  for (const InstructionSet set : instruction_sets()) compare(kernels_for(set).proposals);
+  for (const InstructionSet set : instruction_sets()) compare(proposal_kernels_for(set));
 }

@@ -4,7 +4,6 @@
 #include <numeric>
 #include <span>
 
-#include "engine/monte_carlo/kernel/kernel_table.hpp"
 #include "tests/engine/monte_carlo/rejection_free/bound_cases.hpp"
 #include "tests/engine/sample_packings.hpp"
 
@@ -157,7 +156,7 @@ TEST_CASE("a sphere of ten diameters has bounds from hundreds of small ones") {
     CHECK(weight < 0.2 * n_ring_parts * Directions::n_sectors * whole_weight);
     for (const InstructionSet set : instruction_sets()) {
       BoundTables<PeriodicBox, Directions, SeveralSizes> remaining(box,
-                                                                   kernels_for(set).rejection_free);
+                                                                   rejection_free_kernels_for(set));
       remaining.build(kind.bins(), centres);
       CHECK(remaining.weights().total() == tables.weights().total());
       CHECK(remaining.weights().weight(0) == weight);
@@ -175,7 +174,7 @@ TEST_CASE("bounds of sizes of diameter 1 are those of equal spheres, bit for bit
   const auto compare = [&]<class Directions>(const Kind<Directions>& kind) {
     CAPTURE(kind.move.max_step);
     for (const InstructionSet set : instruction_sets()) {
-      const RejectionFreeKernels kernels = kernels_for(set).rejection_free;
+      const RejectionFreeKernels kernels = rejection_free_kernels_for(set);
       BoundTables<PeriodicBox, Directions, EqualSpheres> expected(box, kernels);
       BoundTables<PeriodicBox, Directions, SeveralSizes> found(box, kernels);
       expected.build(kind.bins(), equal);
