@@ -91,15 +91,20 @@ endfunction()
 # jostle_library(engine [NOT_HOT] [FIRST_RUN a.cpp ...] SOURCES b.cpp ... [SEPARATE c.cpp ...] PUBLIC jostle_x ...
 # PRIVATE ...): one folder, one library, installed as jostle::engine. FIRST_RUN sources are those that running a scene
 # needs: they are units of their own, also in jostle_engine_first_run, which is not installed, for the program of a
-# first run (cli). Those of them that SEPARATE names too hold the loops that runs spend their time in: each is a unit
-# of its own, so that the compiler's limits on inlining see that loop alone. Link only what the arrows allow: engine <-
-# structure <- ensemble; config and results use those; study joins them, and cli is its command line.
+# first run (cli). Sources of both lists that SEPARATE names too hold the loops that runs spend their time in: each is a
+# unit of its own, so that the compiler's limits on inlining see that loop alone. Link only what the arrows allow: engine
+# <- structure <- ensemble; config and results use those; study joins them, and cli is its command line.
 function(jostle_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_HOT" "" "FIRST_RUN;SOURCES;SEPARATE;PUBLIC;PRIVATE")
   set(group hot)
   if(arg_NOT_HOT)
     set(group not_hot)
   endif()
+  foreach(source ${arg_SEPARATE})
+    if(NOT source IN_LIST arg_SOURCES AND NOT source IN_LIST arg_FIRST_RUN)
+      message(FATAL_ERROR "jostle_library(${name}): ${source} is SEPARATE, and not among the sources")
+    endif()
+  endforeach()
   set(all_sources ${arg_SOURCES})
   if(arg_FIRST_RUN)
     set(first_run jostle_${name}_first_run)

@@ -39,7 +39,7 @@ class Reader {
   bool is_list(std::size_t least, std::size_t most, std::string_view of_what) const;
   Reader element(std::size_t index) const;
   std::optional<Reader> find(const std::string& key) const;
-  /// find(), and missing(key, content) where there is none and `content` is not empty.
+  /// Returns find(key); calls missing(key, content) where there is none and `content` is not empty.
   std::optional<Reader> member(std::string_view key, std::string_view content) const;
 
   /// The value itself; nothing, and a fault, where it has another type or is out of range. Numbers

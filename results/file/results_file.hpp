@@ -97,7 +97,7 @@ class ResultsFile {
 
   /// Every (point, realization), points outermost; or those of its share alone.
   std::vector<RealizationSummary> realizations(Realizations selection = Realizations::all) const;
-  /// Those of one sweep point: reads nothing of the others.
+  /// Returns those of one sweep point; reads nothing of the others.
   std::vector<RealizationSummary> realizations_at(std::uint32_t point) const;
   /// The observables, then the diagnostics of the engine.
   std::vector<Series> series(std::uint32_t point) const;

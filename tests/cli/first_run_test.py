@@ -1,5 +1,6 @@
 """The program of a first run: which scenes it runs, and when ./dev builds and uses it."""
 
+import json
 import os
 import re
 import shutil
@@ -129,13 +130,13 @@ class Dev(Case):
             shutil.copy(SOURCE / name, self.tree)
         shutil.copytree(SOURCE / "packages", self.tree / "packages")
 
-    def dev(self, *arguments, expect=OK, **environment):
+    def dev(self, *arguments, expect=OK, scene=None, **environment):
         """Returns what ./dev built, and what it printed."""
         built = self.folder / "built"
         built.unlink(missing_ok=True)
         own = {"JOSTLE": JOSTLE, "FIRST_RUN": FIRST_RUN, "BUILT": str(built), "FAILS": "",
                "PATH": f"{self.tree / 'tools'}:{os.environ['PATH']}"}
-        done = subprocess.run([self.tree / "dev", *map(str, arguments)], cwd=self.folder, text=True,
+        done = subprocess.run([self.tree / "dev", *map(str, arguments)], cwd=self.folder, text=True, input=scene,
                               capture_output=True, env={**PLAIN, **UNFOLDED, **own, **environment})
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return built.read_text().split() if built.exists() else [], done
@@ -177,6 +178,18 @@ class Dev(Case):
         self.assertEqual(built, ["jostle_first_run"])
         self.assertEqual(done.stderr.count("/sphere: "), 1)
         self.assertEqual(sorted(path.name for path in self.folder.glob("*.h5")), [])
+
+    def test_a_scene_from_a_pipe_is_read_by_jostle(self):
+        for command in (("check", "--no-pilot"), ("run", "-o", "piped.h5")):
+            (self.tree / "build/release/cli/jostle").unlink(missing_ok=True)
+            built, done = self.dev(*command, "/dev/stdin", scene=json.dumps(TINY))
+            self.assertEqual((built, done.stderr.count("fault")), (["jostle"], 0))
+
+    def test_faults_of_a_command_line_name_the_command(self):
+        self.write(TINY)
+        built, done = self.dev("check", "scene.json", "--no-pilo", expect=BAD_INPUT)
+        self.assertEqual((built, done.stderr.count("jostle check")), (["jostle_first_run"], 1), done.stderr)
+        self.assertNotIn("requests", done.stderr)
 
     def test_help_of_run_needs_no_scene(self):
         built, done = self.dev("run", "--help")

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 #include <vector>
@@ -165,14 +166,15 @@ class BlockerCaches {
   std::size_t bytes() const { return sizeof(Cache) * caches_.capacity(); }
 
  private:
-  using FourIndices = Index __attribute__((vector_size(16), aligned(4), may_alias));
+  using FourIndices = Index __attribute__((vector_size(16)));
 
   // The place of sphere i in a row that holds it, or Cache::size where it is not among the first. A
   // row has more room than a cache. Entries behind the end of a short row are not found, because
   // the row itself has sphere i before them.
   [[gnu::always_inline]] static Index lane_of(Index i, const Index* row) {
-    const auto matches = *reinterpret_cast<const FourIndices*>(row + 1) == i;
-    const unsigned lanes = bits_of_four((FourMask)matches);
+    FourIndices first;
+    std::memcpy(&first, row + 1, sizeof first);  // rows begin at any index
+    const unsigned lanes = bits_of_four((FourMask)(first == i));
     return static_cast<Index>(std::countr_zero(lanes | 1u << Cache::size));
   }
 

@@ -12,7 +12,7 @@
 // first run needs none of them.
 namespace jostle::inline engine {
 
-/// make(container, policy), both with their types.
+/// Calls make(container, policy), both with their types.
 template <class Make>
 std::unique_ptr<TrialLoop> choose_loop(const Container& container, const Move& move, StreamKey key,
                                        const Make& make) {
@@ -38,11 +38,11 @@ std::unique_ptr<TrialLoop> make_exhaustive_loop(const Container& container, cons
       });
 }
 
-/// A loop for equal spheres, with the rejection-free sampler.
+/// Makes a loop for equal spheres, with the rejection-free sampler.
 std::unique_ptr<TrialLoop> make_rejection_free_loop(const Container& container, const Move& move,
                                                     StreamKey key, InstructionSet set);
 
-/// A loop for several sizes, with either sampler.
+/// Makes a loop for several sizes, with either sampler.
 std::unique_ptr<TrialLoop> make_loop_for_sizes(const Container& container, const Move& move,
                                                StreamKey key, InstructionSet set, Sampler sampler);
 

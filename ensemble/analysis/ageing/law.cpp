@@ -229,7 +229,7 @@ Eigen::VectorXd AgeingLeastSquares::refined(Eigen::VectorXd parameters,
     const std::vector<Eigen::Index> free = free_parameters(parameters, all, residual, held);
     const auto n = static_cast<Eigen::Index>(free.size());
     if (n == 0) break;
-    Eigen::MatrixXd columns = all(Eigen::all, free);
+    Eigen::MatrixXd columns = all(Eigen::seqN(0, all.rows()), free);
     Eigen::VectorXd right = residual;
     if (damping > 0) {
       const Eigen::VectorXd scales = columns.colwise().norm();
@@ -348,7 +348,8 @@ Eigen::VectorXd AgeingLeastSquares::weights_of(std::size_t parameter,
                                                const Eigen::VectorXd& parameters) const {
   const Eigen::MatrixXd all = slopes(parameters);
   const auto fitted_ones = free_parameters(parameters, all, residuals(parameters), parameter);
-  return beyond_others(all.col(static_cast<Eigen::Index>(parameter)), all(Eigen::all, fitted_ones));
+  return beyond_others(all.col(static_cast<Eigen::Index>(parameter)),
+                       all(Eigen::seqN(0, all.rows()), fitted_ones));
 }
 
 double AgeingLeastSquares::t_of(std::size_t parameter, double value) const {
