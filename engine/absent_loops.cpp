@@ -1,5 +1,5 @@
-// In the place of the loops that the program of a first run does not have (cli/CMakeLists.txt).
-// `run` refuses the scenes that need them before it calls these; a pilot of `check` ends here.
+// The program of a first run does not have these loops (cli/CMakeLists.txt): their functions throw.
+// `run` refuses scenes that need them before it calls these; a pilot of `check` ends here.
 #include <stdexcept>
 #include <string>
 

@@ -18,14 +18,8 @@ constexpr double deepest_possible =
     0.2;  // largest possible overlap of spheres that press on each other
 
 GrainKernels kernels_of(GrainLaw law, GrainSizes sizes, InstructionSet set) {
-  constexpr CompiledFor<GrainKernels(GrainLaw, GrainSizes)> compiled[] = {
-      {InstructionSet::baseline, baseline::grain_kernels},
-#ifdef JOSTLE_X86_KERNELS
-      {InstructionSet::avx2, avx2::grain_kernels},
-      {InstructionSet::avx512, avx512::grain_kernels},
-#endif
-  };
-  return function_for(set, compiled)(law, sizes);
+  return function_for<GrainKernels(GrainLaw, GrainSizes)>(set, JOSTLE_EVERY_SET(grain_kernels))(
+      law, sizes);
 }
 
 Vec3 spin_of(const SphereRow& row, double spin_z) {

@@ -8,14 +8,7 @@
 namespace jostle::inline engine {
 
 ProposalKernels proposal_kernels_for(InstructionSet set) {
-  constexpr CompiledFor<ProposalKernels()> compiled[] = {
-      {InstructionSet::baseline, baseline::proposal_kernels},
-#ifdef JOSTLE_X86_KERNELS
-      {InstructionSet::avx2, avx2::proposal_kernels},
-      {InstructionSet::avx512, avx512::proposal_kernels},
-#endif
-  };
-  return function_for(set, compiled)();
+  return function_for<ProposalKernels()>(set, JOSTLE_EVERY_SET(proposal_kernels))();
 }
 
 std::unique_ptr<TrialLoop> make_trial_loop(const Container& container, const Move& move,

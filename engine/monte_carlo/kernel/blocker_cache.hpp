@@ -173,7 +173,7 @@ class BlockerCaches {
   // the row itself has sphere i before them.
   [[gnu::always_inline]] static Index lane_of(Index i, const Index* row) {
     FourIndices first;
-    std::memcpy(&first, row + 1, sizeof first);  // rows begin at any index
+    std::memcpy(&first, row + 1, sizeof first);  // a row may begin anywhere
     const unsigned lanes = bits_of_four((FourMask)(first == i));
     return static_cast<Index>(std::countr_zero(lanes | 1u << Cache::size));
   }

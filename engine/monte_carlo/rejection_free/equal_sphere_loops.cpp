@@ -4,14 +4,7 @@
 namespace jostle::inline engine {
 
 RejectionFreeKernels rejection_free_kernels_for(InstructionSet set) {
-  constexpr CompiledFor<RejectionFreeKernels()> compiled[] = {
-      {InstructionSet::baseline, baseline::rejection_free_kernels},
-#ifdef JOSTLE_X86_KERNELS
-      {InstructionSet::avx2, avx2::rejection_free_kernels},
-      {InstructionSet::avx512, avx512::rejection_free_kernels},
-#endif
-  };
-  return function_for(set, compiled)();
+  return function_for<RejectionFreeKernels()>(set, JOSTLE_EVERY_SET(rejection_free_kernels))();
 }
 
 std::unique_ptr<TrialLoop> make_rejection_free_loop(const Container& container, const Move& move,
