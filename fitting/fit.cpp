@@ -253,6 +253,7 @@ bool Fitter::find_intervals(const DependentErrors& errors, Fit& fit) {
     estimate.intervals[0] = found.intervals[0];
     estimate.intervals[1] = found.intervals[1];
     if (fit.has_student_intervals) use_student_intervals(curve_, fit.error_dof, estimate);
+    mark_unfinished(options_.solver, estimate);
   }
   return true;
 }

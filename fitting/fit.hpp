@@ -55,6 +55,7 @@ struct Interval {
 enum class Identifiability {
   fixed,             // by the user
   not_examined,      // no intervals asked for, or no degree of freedom left
+  unfinished,        // open, because the fit stopped at its limit of evaluations
   identified,        // closed
   wide,              // closed, but over more than a factor 2, or than an eighth of the curve
   bounded_below,     // no upper limit

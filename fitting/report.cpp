@@ -54,6 +54,8 @@ const char* verdict_text(Identifiability identifiability) {
       return "fixed";
     case Identifiability::not_examined:
       return "not examined";
+    case Identifiability::unfinished:
+      return "unfinished";
     case Identifiability::identified:
       return "identified";
     case Identifiability::wide:

@@ -68,10 +68,12 @@ Estimate estimate_in(const Rewritten& rewritten, std::size_t index, const Fitted
                                fitted.options.solver,
                                errors.level_weight};
   const ParameterProfile found = profile(problem, index, estimate.standard_error);
-  if (found.better) return estimate;
-  estimate.intervals[0] = found.intervals[0];
-  estimate.intervals[1] = found.intervals[1];
-  if (fit.has_student_intervals) use_student_intervals(fitted.curve, fit.error_dof, estimate);
+  if (!found.better) {
+    estimate.intervals[0] = found.intervals[0];
+    estimate.intervals[1] = found.intervals[1];
+    if (fit.has_student_intervals) use_student_intervals(fitted.curve, fit.error_dof, estimate);
+  }
+  mark_unfinished(fitted.options.solver, estimate);
   return estimate;
 }
 

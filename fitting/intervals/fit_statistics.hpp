@@ -36,7 +36,9 @@ void open_absurd_intervals(const Curve& curve, const Fit& fit, std::vector<Estim
 /// Takes the errors of examined estimates from their 68 % intervals, infinite where these are open:
 /// in an ill-conditioned problem those of the linear one mean nothing.
 void take_errors_of_intervals(const Fit& fit, std::vector<Estimate>& estimates);
-/// Classifies estimates by their 95 % intervals, without remarks.
+/// Calls an estimate unfinished whose 95 % interval is open when the budget of the fit is spent.
+void mark_unfinished(const SolverOptions& solver, Estimate& estimate);
+/// Classifies estimates by their 95 % intervals, without remarks; unfinished ones stay so.
 void judge_estimates(const Curve& curve, std::vector<Estimate>& estimates);
 
 }  // namespace jostle::inline fitting

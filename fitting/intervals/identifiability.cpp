@@ -65,6 +65,9 @@ std::string statement(const Estimate& estimate) {
     case Identifiability::not_examined:
       text << name << " was not examined";
       break;
+    case Identifiability::unfinished:
+      text << name << " is unfinished: the fit stopped before it found both 95 % limits";
+      break;
     case Identifiability::identified:
       text << name << " is identified: " << limits << " (95 %)";
       break;
@@ -230,6 +233,8 @@ const char* name_of(Identifiability identifiability) {
       return "fixed";
     case Identifiability::not_examined:
       return "not_examined";
+    case Identifiability::unfinished:
+      return "unfinished";
     case Identifiability::identified:
       return "identified";
     case Identifiability::wide:
@@ -249,7 +254,8 @@ bool Estimate::has_value() const {
   if (identifiability == Identifiability::not_examined) {
     return !(standard_error > absurd * std::abs(value)) || !std::isfinite(standard_error);
   }
-  return identifiability != Identifiability::not_identifiable && intervals[0].closed();
+  const Interval& wide = intervals[1];
+  return intervals[0].closed() && (std::isfinite(wide.lower) || std::isfinite(wide.upper));
 }
 
 double Estimate::half_width() const {
@@ -275,10 +281,15 @@ void take_errors_of_intervals(const Fit& fit, std::vector<Estimate>& estimates) 
   }
 }
 
+void mark_unfinished(const SolverOptions& solver, Estimate& estimate) {
+  if (solver.budget != nullptr && solver.budget->spent() && !estimate.intervals[1].closed())
+    estimate.identifiability = Identifiability::unfinished;
+}
+
 void judge_estimates(const Curve& curve, std::vector<Estimate>& estimates) {
   for (Estimate& estimate : estimates) {
-    const bool examined = estimate.identifiability > Identifiability::not_examined;
-    if (examined) estimate.identifiability = verdict(estimate, curve);
+    const bool judged = estimate.identifiability > Identifiability::unfinished;
+    if (judged) estimate.identifiability = verdict(estimate, curve);
     estimate.statement = statement(estimate);
   }
 }

@@ -10,7 +10,7 @@ from random import Random
 from support import BAD_INPUT, SOURCE, UNFOLDED, Case, some
 
 ROW = re.compile(r"^  (\S+) +(\S+) +(no limit|[<>] \S+|\S+ to \S+) +(identified|wide|only a lower limit|"
-                 r"only an upper limit|not identifiable)$", re.M)
+                 r"only an upper limit|not identifiable|unfinished)$", re.M)
 CELLS = re.compile(r"<tr><td>([^<]*)</td><td>[^<]*</td><td>([^<]*)</td><td>([^<]*)</td><td>[^<]*</td></tr>")
 
 

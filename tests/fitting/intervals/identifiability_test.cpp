@@ -8,6 +8,7 @@
 #include "fitting/models/models.hpp"
 #include "fitting/numbers.hpp"
 #include "fitting/report.hpp"
+#include "tests/fitting/noise.hpp"
 #include "tests/test_files.hpp"
 
 namespace jostle {
@@ -156,6 +157,47 @@ TEST_CASE("a good curve is reported as identified, without remarks") {
     CHECK(estimate.intervals[0].upper < estimate.intervals[1].upper);
   }
   CHECK(fitted.remarks.empty());
+}
+
+TEST_CASE("intervals of a fit that stopped are unfinished, and the data are not blamed") {
+  Curve curve;
+  Noise noise(17);
+  for (int tap = 1; tap <= 400; ++tap) {
+    curve.t.push_back(tap);
+    curve.x.push_back(0.6 - 0.05 / (1 + std::log1p(tap / 10.0)) + 1e-5 * noise());
+  }
+  const auto model = make_model("inverse_log");
+  const auto fit_within = [&](long long evaluations) {
+    FitOptions options;
+    options.max_evaluations = evaluations;
+    return std::get<Fit>(fit(*model, curve, options));
+  };
+  const Fit whole = fit_within(100000);
+  for (const Estimate& estimate : whole.estimates)
+    REQUIRE(estimate.identifiability == Identifiability::identified);
+  int unfinished = 0, identified_after_a_stop = 0;
+  for (long long most = 20; most < whole.total_evaluations; most += 20) {
+    CAPTURE(most);
+    const Fit found = fit_within(most);
+    const bool stopped = mentions(found.remarks, "stopped at its limit of evaluations");
+    CHECK_FALSE(mentions(found.remarks, "The data hardly constrain"));
+    for (const Estimate& estimate : found.estimates) {
+      CAPTURE(estimate.statement);
+      const bool closed = estimate.intervals[1].closed();
+      CHECK(estimate.identifiability ==
+            (closed ? Identifiability::identified : Identifiability::unfinished));
+      CHECK((closed || stopped));
+      if (!closed) {
+        ++unfinished;
+        CHECK(std::isfinite(estimate.error) == estimate.has_value());
+        CHECK(estimate.statement.find("the fit stopped before") != std::string::npos);
+      } else if (stopped) {
+        ++identified_after_a_stop;
+      }
+    }
+  }
+  CHECK(unfinished > 20);
+  CHECK(identified_after_a_stop > 0);
 }
 
 }  // namespace jostle
