@@ -157,30 +157,6 @@ def stated(run, numbers, dof):
     return [Estimate(float(value), float(error), dof * len(pairs)) for value, _ in pairs]
 
 
-GOTOH = "P0({}) is near Gotoh's at the packing's own Phi (a tenth), tap {}"
-
-
-def gotoh(place):
-    """P0 less Gotoh's, 10^-3, at sigma = 1.2 and 1.4, taps 0 and 400."""
-    return [stated("pb9", [(GOTOH.format(sigma, tap), 0) for tap in (0, 400) for sigma in (1.2, 1.4)], 2)[place]]
-
-
-def gotoh_at_12_first():
-    return gotoh(0)
-
-
-def gotoh_at_14_first():
-    return gotoh(1)
-
-
-def gotoh_at_12_last():
-    return gotoh(2)
-
-
-def gotoh_at_14_last():
-    return gotoh(3)
-
-
 SLOPE = "the spectrum falls as f^-s, s from 1 to 1.5, at eps^(1/2) = {:.3f}"
 
 

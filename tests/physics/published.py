@@ -42,9 +42,10 @@ FIGURES = {
     "pb8": Figure("PB 8: lateral and central increase", ("pb6-8",), f"{PB}/fig6-8", "4096", "1000 (4000)",
                   "4 / 10", "the central increase is below the lateral, tap 1000",
                   WALLS + " The four strengths are ours."),
-    "pb9": Figure("PB 9: P0(sigma)", ("pb9",), f"{PB}/fig9", "4096", "400 (4000)", "3 / 1",
+    "pb9": Figure("PB 9: P0(sigma)", ("pb-voids",), f"{PB}/fig9", "4096", "4000", "4 / 1",
                   "Phi = 58.4 % at the start",
-                  "The strength (0.02) is ours; \"hardly\" and \"near\" are read as 0.03."),
+                  "The strengths are ours: 0.02 for the paper's statements, and 0.1. \"Hardly\" and \"near\" are read as "
+                  "0.03."),
     "pb10": Figure("PB 10: pores", ("pb10", "pb-pores"), f"{PB}/fig10", "4096", "9999; 0",
                    "3, 20 / 1", "the tail shrinks (v0 falls)", "Distributions count Voronoi vertices in the box. The "
                    "number of pores counts sets of four neighbours whose centres are in the box. The paper's numbers "

@@ -4,7 +4,7 @@ from matplotlib.collections import EllipseCollection
 from scipy import optimize, stats
 
 from contrasts_of_beds import FRICTIONS, ROUGH, whole_bed
-from distributions import beds_of_point, distribution, label, numbers, series
+from distributions import beds_of_points, distribution, label, numbers, series
 from pictures import COLOURS, value_of
 from reduce import REDUCED, read_table
 
@@ -63,15 +63,15 @@ def gotoh(sigma, phi):
 
 
 def draw_void_probability(axes):
-    """[PB] 9: P0 of the packings and Gotoh's at the later fraction."""
-    header, *rows = read_table(REDUCED / "pb9" / "1.csv")
-    sigma = np.array([float(row[0]) for row in rows])
+    """[PB] 9: P0 of the packings, strength 0.02, and Gotoh's at the later fraction."""
     fine = np.linspace(0, 2, 200)
-    phi = 1 - value_of(rows[1][3])[0]  # P0(1) = 1 - Phi
+    phi = numbers("pb-voids", 0, "void_probability/phi", 4000).mean()
     axes[0].plot(fine, gotoh(fine, phi), "k", linewidth=2, label=f"Gotoh, Phi = {phi:.3f}")
-    for column, marks, name in ((3, {"marker": "o", "markerfacecolor": "none", "linestyle": "none"}, "tap 400"),
-                                (1, {"marker": "_", "linestyle": "none", "markersize": 8}, "tap 0")):
-        axes[0].plot(sigma, [value_of(row[column])[0] for row in rows], color=COLOURS[column // 2], label=name, **marks)
+    found = distribution("pb-voids", 0, "void_probability/p0")
+    for k, (tap, marks) in enumerate(((4000, {"marker": "o", "markerfacecolor": "none"}),
+                                      (0, {"marker": "_", "markersize": 8}))):
+        sigma, mean, _ = found[tap]
+        axes[0].plot(sigma, mean, color=COLOURS[1 - k], label=f"tap {tap}", linestyle="none", **marks)
     axes[0].set(xlabel="sigma", ylabel="P0", xlim=(0, 2))
     axes[0].legend()
 
@@ -146,7 +146,7 @@ def draw_neighbours(axes):
     """[DR] 8: share of spheres against neighbours, all spheres of all beds, and the normal laws."""
     n, share, error = distribution("dr-pours", ROUGH, "all/neighbour_share")[0]
     axes[0].errorbar(n, share, error, linestyle="none", marker="o", markersize=3.5, color=COLOURS[0], capsize=1,
-                     label=f"{beds_of_point('dr-pours', ROUGH)} beds")
+                     label=f"{beds_of_points('dr-pours', ROUGH)} beds")
     fine = np.linspace(1, 12.5, 200)
     mean, width = (numbers("dr-pours", ROUGH, f"all/normal_{name}", 0).mean() for name in ("mean", "width"))
     axes[0].plot(fine, stats.norm.pdf(fine, mean, width), color=COLOURS[0], label=f"normal: {mean:.2f}, {width:.2f}")
@@ -159,7 +159,7 @@ def draw_free_volumes(axes):
     """[DR] 9: probability density of the free volume, in sphere volumes."""
     x, density, error = distribution("dr-pours", ROUGH, "voronoi/free_volume_density")[0]
     axes[0].errorbar(x, density, error, marker="o", markersize=2.5, color=COLOURS[0], elinewidth=.6,
-                     label=f"friction 0.1, {beds_of_point('dr-pours', ROUGH)} beds")
+                     label=f"friction 0.1, {beds_of_points('dr-pours', ROUGH)} beds")
     axes[0].set(xlabel="free volume, sphere volumes", ylabel="probability density", xlim=(0.3, 1.2), ylim=(0, None))
     axes[0].legend()
 
