@@ -5,6 +5,7 @@ paper_runs.py JOSTLE FOLDER --hours H [--only NAME ...] or --list. The runs are 
 One bed is one shard of its scene, and continues from FOLDER after a stop. The reduced data alone record the finished
 beds: on another machine only the unfinished bed begins anew."""
 import argparse
+import contextlib
 import csv
 import dataclasses
 import json
@@ -96,6 +97,12 @@ def listing(runs, reduced):
     return "\n".join(lines + [f"next: {following}" if following else "all runs are finished"])
 
 
+def yield_processors(session):
+    """Lowers the share of a session, which Linux weighs as a whole whatever the niceness in it (sched(7), autogroup)."""
+    with contextlib.suppress(OSError):
+        pathlib.Path(f"/proc/{session}/autogroup").write_text("19")
+
+
 class Stop:
     """Asks the program to stop at Ctrl-C or SIGTERM, as the time limit does: the bed under way is kept."""
 
@@ -113,6 +120,7 @@ class Stop:
         """The exit code of a command at the lowest priority; it does not see the terminal's Ctrl-C itself."""
         self.process = subprocess.Popen(["nice", "-n", "19", *map(str, command)], stdout=subprocess.DEVNULL,
                                         start_new_session=True)
+        yield_processors(self.process.pid)
         if self.asked:
             self.process.send_signal(signal.SIGTERM)
         code = self.process.wait()
