@@ -24,6 +24,7 @@ AXES = {"profile": "height", "sides": "x", "layers": "height", "coordination": "
         "pores": "xi", "void_probability": "sigma"}
 KEPT = {"profile": ("phi",), "sides": ("phi_xy",), "layers": ("n",), "coordination": ("neighbour_share",),
         "voronoi": ("free_volume_density",), "pores": ("rho_v", "v_rho_v"), "void_probability": ("p0", "p0_gotoh")}
+SINGLE = {"void_probability": (1.2,)}  # places whose values are kept of each bed, for differences within beds
 
 
 class OtherScene(Exception):
@@ -100,6 +101,8 @@ def structure_of(jostle, path, scene, point, realization, taps):
                 places = table["axes"][AXES[part]]["values"]
                 curves += [(tap, f"{part}/{name}", x, value) for tap, row in zip(taps, values) if tap in figures
                            for x, value in zip(places, row) if value]
+                numbers += [(tap, f"{part}/{name}({x:g})", row[int(np.argmin(np.abs(np.array(places) - x)))])
+                            for tap, row in zip(taps, values) for x in SINGLE.get(part, ())]
     return numbers, curves
 
 

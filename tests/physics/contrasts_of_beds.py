@@ -2,7 +2,7 @@
 import numpy as np
 from scipy import stats
 
-from distributions import beds_of_points, distribution, label, numbers, series
+from distributions import label, numbers, series
 from verdicts import Estimate
 
 SPHERE = np.pi / 6
@@ -202,55 +202,39 @@ def fraction_before_voids():
     return [Estimate.of(np.concatenate([series(VOIDS, point, "corrected_fraction", 0) for point in UNTAPPED]))]
 
 
-def void_probability(points, tap, sigma, quantity="p0"):
-    """P0 or Gotoh's at a kept tap, 10^-3: the mean over beds."""
-    places, means, errors = distribution(VOIDS, *points, f"void_probability/{quantity}")[tap]
-    at = int(np.argmin(np.abs(places - sigma)))
-    assert abs(places[at] - sigma) < 1e-9, f"P0 was not measured at {sigma}"
-    return Estimate(float(1000 * means[at]), float(1000 * errors[at]), beds_of_points(VOIDS, *points) - 1)
+def void_probability(points, tap, quantity="p0"):
+    """P0 or Gotoh's at sigma = 1.2 and a kept tap, [bed], 10^-3."""
+    return 1000 * np.concatenate([numbers(VOIDS, point, f"void_probability/{quantity}(1.2)", tap) for point in points])
 
 
-def gotoh(points, tap, sigma):
-    """P0 less Gotoh's at the packing's own fraction. Sums over beds do not keep their pairs: the error is that of
-    independent means, too large where both rise in loose beds."""
-    return [void_probability(points, tap, sigma).less(void_probability(points, tap, sigma, "p0_gotoh"))]
+def above_gotoh(points, tap):
+    """P0 less Gotoh's at the packing's own fraction."""
+    return [Estimate.of(void_probability(points, tap) - void_probability(points, tap, "p0_gotoh"))]
 
 
-def gotoh_at_12_first():
-    return gotoh(UNTAPPED, 0, 1.2)
+def above_gotoh_first():
+    return above_gotoh(UNTAPPED, 0)
 
 
-def gotoh_at_14_first():
-    return gotoh(UNTAPPED, 0, 1.4)
+def above_gotoh_last():
+    return above_gotoh(WEAK, 4000)
 
 
-def gotoh_at_12_last():
-    return gotoh(WEAK, 4000, 1.2)
+def strong_above_gotoh_last():
+    return above_gotoh(STRONG, 4000)
 
 
-def gotoh_at_14_last():
-    return gotoh(WEAK, 4000, 1.4)
+def voids_change(points):
+    """P0 after 4000 taps less that before."""
+    return [Estimate.of(void_probability(points, 4000) - void_probability(points, 0))]
 
 
-def voids_change(points, sigma):
-    """P0 after 4000 taps less that before, as if of independent beds."""
-    return [void_probability(points, 4000, sigma).less(void_probability(points, 0, sigma))]
+def weak_voids_change():
+    return voids_change(WEAK)
 
 
-def voids_change_at_12():
-    return voids_change(WEAK, 1.2)
-
-
-def voids_change_at_14():
-    return voids_change(WEAK, 1.4)
-
-
-def strong_voids_change_at_12():
-    return voids_change(STRONG, 1.2)
-
-
-def strong_voids_change_at_14():
-    return voids_change(STRONG, 1.4)
+def strong_voids_change():
+    return voids_change(STRONG)
 
 
 def pores_of_four(tap):

@@ -4,25 +4,19 @@ import numpy as np
 from reduce import REDUCED, read_table
 
 
-def beds_of_points(run, *points):
-    return sum(row[0] in map(str, points) for row in read_table(REDUCED / run / "beds.csv")[1:])
+def beds_of_point(run, point):
+    return sum(row[0] == str(point) for row in read_table(REDUCED / run / "beds.csv")[1:])
 
 
-def distribution(run, *points_and_quantity):
-    """{tap: (x, mean, standard error of the mean)} over the beds of a sweep point, or of several alike."""
-    *points, quantity = points_and_quantity
-    beds, sums = beds_of_points(run, *points), {}
+def distribution(run, point, quantity):
+    """{tap: (x, mean, standard error of the mean)} over the beds of a sweep point."""
+    beds, found = beds_of_point(run, point), {}
     for row in read_table(REDUCED / run / "distributions.csv")[1:]:
-        if row[0] in map(str, points) and row[2] == quantity:
-            at = sums.setdefault(int(row[1]), {}).setdefault(float(row[3]), [0.0, 0.0])
-            at[0] += float(row[4])
-            at[1] += float(row[5])
-    found = {}
-    for tap, of_tap in sums.items():
-        mean, square = np.array(list(of_tap.values())).T / beds
-        error = np.sqrt(np.maximum(0.0, square - mean**2) / max(1, beds - 1))
-        found[tap] = np.array(list(of_tap)), mean, error
-    return found
+        if row[0] == str(point) and row[2] == quantity:
+            mean, square = float(row[4]) / beds, float(row[5]) / beds
+            error = np.sqrt(max(0.0, square - mean**2) / max(1, beds - 1))
+            found.setdefault(int(row[1]), []).append((float(row[3]), mean, error))
+    return {tap: tuple(np.array(rows).T) for tap, rows in found.items()}
 
 
 def numbers(run, point, quantity, tap):

@@ -4,7 +4,7 @@ from matplotlib.collections import EllipseCollection
 from scipy import optimize, stats
 
 from contrasts_of_beds import FRICTIONS, ROUGH, whole_bed
-from distributions import beds_of_points, distribution, label, numbers, series
+from distributions import beds_of_point, distribution, label, numbers, series
 from pictures import COLOURS, value_of
 from reduce import REDUCED, read_table
 
@@ -146,7 +146,7 @@ def draw_neighbours(axes):
     """[DR] 8: share of spheres against neighbours, all spheres of all beds, and the normal laws."""
     n, share, error = distribution("dr-pours", ROUGH, "all/neighbour_share")[0]
     axes[0].errorbar(n, share, error, linestyle="none", marker="o", markersize=3.5, color=COLOURS[0], capsize=1,
-                     label=f"{beds_of_points('dr-pours', ROUGH)} beds")
+                     label=f"{beds_of_point('dr-pours', ROUGH)} beds")
     fine = np.linspace(1, 12.5, 200)
     mean, width = (numbers("dr-pours", ROUGH, f"all/normal_{name}", 0).mean() for name in ("mean", "width"))
     axes[0].plot(fine, stats.norm.pdf(fine, mean, width), color=COLOURS[0], label=f"normal: {mean:.2f}, {width:.2f}")
@@ -159,7 +159,7 @@ def draw_free_volumes(axes):
     """[DR] 9: probability density of the free volume, in sphere volumes."""
     x, density, error = distribution("dr-pours", ROUGH, "voronoi/free_volume_density")[0]
     axes[0].errorbar(x, density, error, marker="o", markersize=2.5, color=COLOURS[0], elinewidth=.6,
-                     label=f"friction 0.1, {beds_of_points('dr-pours', ROUGH)} beds")
+                     label=f"friction 0.1, {beds_of_point('dr-pours', ROUGH)} beds")
     axes[0].set(xlabel="free volume, sphere volumes", ylabel="probability density", xlim=(0.3, 1.2), ylim=(0, None))
     axes[0].legend()
 
