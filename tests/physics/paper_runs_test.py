@@ -27,7 +27,8 @@ SCENE = {"name": "tiny", "description": ["two strengths"], "seed": 7, "realizati
          "relax": {"polar": {}, "stop": {"mean_height": {"eta": 1e-3, "every_sweeps": 10}}},
          "observe": ["mean_height", {"bulk_fraction": {"name": "floor", "heights": [0, 2]}}],
          "snapshots": {"taps": [0, 6], "keep": ["positions", "height_histogram"], "bin_width": 0.5},
-         "sweep": {"/protocol/0/tap/dilate": [0.02, 0.1]}, "structure": {"profile": {}, "pores": {}, "void_probability": {"points": 2000}}}
+         "sweep": {"/protocol/0/tap/dilate": [0.02, 0.1]},
+         "structure": {"profile": {}, "pores": {}, "void_probability": {"points": 2000}}}
 
 
 def check(holds, *found):

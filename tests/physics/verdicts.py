@@ -31,14 +31,12 @@ class Estimate:
     @staticmethod
     def difference(first, second):
         """The difference of two independent means (Welch 1947)."""
-        return Estimate.of(first).less(Estimate.of(second))
-
-    def less(self, other):
-        """Less an independent number (Welch 1947)."""
-        squares = self.error**2, other.error**2
-        of_squares = sum(square**2 / max(mean.dof, 1) for square, mean in zip(squares, (self, other)))
+        first, second = Estimate.of(first), Estimate.of(second)
+        squares = first.error**2, second.error**2
+        of_squares = sum(square**2 / max(mean.dof, 1)
+                         for square, mean in zip(squares, (first, second)))
         dof = sum(squares)**2 / of_squares if of_squares > 0 else 0
-        return Estimate(self.value - other.value, float(np.sqrt(sum(squares))), dof)
+        return Estimate(first.value - second.value, float(np.sqrt(sum(squares))), dof)
 
     def from_printed(self, printed, error):
         """Less a number that is known to a standard error (Welch 1947)."""
