@@ -98,7 +98,7 @@ def listing(runs, reduced):
 
 
 def yield_processors(session):
-    """Lowers the share of a session, which Linux weighs as a whole whatever the niceness in it (sched(7), autogroup)."""
+    """Lowers the share of a session: Linux weighs it as a whole, whatever the niceness in it (sched(7), autogroup)."""
     with contextlib.suppress(OSError):
         pathlib.Path(f"/proc/{session}/autogroup").write_text("19")
 

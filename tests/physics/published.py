@@ -44,8 +44,8 @@ FIGURES = {
                   WALLS + " The four strengths are ours."),
     "pb9": Figure("PB 9: P0(sigma)", ("pb-voids",), f"{PB}/fig9", "4096", "4000", "4 / 1",
                   "Phi = 58.4 % at the start",
-                  "The strengths are ours: 0.02 for the paper's statements, where Phi rises by 0.03 (the paper: 0.022), and "
-                  "0.1. \"Hardly\" and \"near\" are read as 0.03, at sigma = 1.2: at 1.4 P0 is below 0.02, so that "
+                  "The strengths are ours: 0.02 for the paper's statements, where Phi rises by 0.03 (the paper: 0.022), "
+                  "and 0.1. \"Hardly\" and \"near\" are read as 0.03, at sigma = 1.2: at 1.4 P0 is below 0.02, so that "
                   "no difference could reach 0.03."),
     "pb10": Figure("PB 10: pores", ("pb10", "pb-pores"), f"{PB}/fig10", "4096", "9999; 0",
                    "3, 20 / 1", "the tail shrinks (v0 falls)", "Distributions count Voronoi vertices in the box. The "
