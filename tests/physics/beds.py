@@ -101,8 +101,9 @@ def structure_of(jostle, path, scene, point, realization, taps):
                 places = table["axes"][AXES[part]]["values"]
                 curves += [(tap, f"{part}/{name}", x, value) for tap, row in zip(taps, values) if tap in figures
                            for x, value in zip(places, row) if value]
-                numbers += [(tap, f"{part}/{name}({x:g})", row[int(np.argmin(np.abs(np.array(places) - x)))])
-                            for tap, row in zip(taps, values) for x in SINGLE.get(part, ())]
+                numbers += [(tap, f"{part}/{name}({x:g})", value) for tap, row in zip(taps, values)
+                            for x, value in zip(places, row)
+                            if value is not None and np.isclose(x, SINGLE.get(part, ())).any()]
     return numbers, curves
 
 

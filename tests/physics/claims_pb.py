@@ -110,10 +110,10 @@ CLAIMS = [
           full=True, **POST),
     Claim("pb9", "Phi = 58.4 % at the start", "printed", "pb-voids", "=fraction_before_voids", printed=0.584,
           printed_error=0.0012, margin=0.0005, relevant=0.01, full=True),
-    *(Claim("pb9", text, "within", "pb-voids", source, margin=30, full=True, **more) for text, source, more in (
+    *(Claim("pb9", text, "within", "pb-voids", source, margin=0.03, full=True, **more) for text, source, more in (
         ("P0(1.2) is near Gotoh's, tap 0 (0.03)", "=above_gotoh_first", POST),
         ("P0(1.2) is near Gotoh's, tap 4000 (0.03)", "=above_gotoh_last", POST),
-        ("P0(1.2) hardly changes (0.03)", "=weak_voids_change", {}),
+        ("P0(1.2) hardly changes (0.03)", "=weak_voids_change", POST),
         ("strength 0.1: P0(1.2) is near Gotoh's, tap 4000 (0.03)", "=strong_above_gotoh_last", {"own": True}),
         ("strength 0.1: P0(1.2) hardly changes (0.03)", "=strong_voids_change", {"own": True}))),
     Claim("pb9", "60.6 % after 4000 taps", "silent", note="the paper prints no strength", full=True),

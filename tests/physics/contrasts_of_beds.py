@@ -199,12 +199,13 @@ UNTAPPED = WEAK + STRONG
 
 
 def fraction_before_voids():
+    """Phi_c of all beds before the first tap: the strengths differ only after it."""
     return [Estimate.of(np.concatenate([series(VOIDS, point, "corrected_fraction", 0) for point in UNTAPPED]))]
 
 
 def void_probability(points, tap, quantity="p0"):
-    """P0 or Gotoh's at sigma = 1.2 and a kept tap, [bed], 10^-3."""
-    return 1000 * np.concatenate([numbers(VOIDS, point, f"void_probability/{quantity}(1.2)", tap) for point in points])
+    """P0 or Gotoh's at sigma = 1.2 and a kept tap, [bed]."""
+    return np.concatenate([numbers(VOIDS, point, f"void_probability/{quantity}(1.2)", tap) for point in points])
 
 
 def above_gotoh(points, tap):

@@ -223,7 +223,7 @@ def main():
     a_run_leaves_the_processors_to_others()
     packings_are_measured()
     every_run_of_the_table_has_its_scene()
-    # Beside other tests these beds would wait for their ends; the bed of the test of signals is brief.
+    # Yielding to other tests, these beds would wait until those end.
     with tempfile.TemporaryDirectory() as folder, mock.patch.object(paper_runs, "yield_processors"):
         place = Place(folder)
         for test in (the_next_bed_is_the_first_that_is_missing, a_call_goes_on_to_the_end_and_from_another_machine,
