@@ -95,8 +95,7 @@ Growth bias_growth(std::span<const double> values_before, std::span<const double
     return growth;
   }
   const PairedBias& change = growth.change;
-  growth.tails = change.error > 0 ? student_tails(change.bias / change.error, dof)
-                                  : (change.bias == 0 ? 1.0 : 0.0);
+  growth.tails = p_value(change.bias, {change.error, dof});
   growth.detectable = smallest_effect_found(significance_level, dof) * change.error;
   return growth;
 }

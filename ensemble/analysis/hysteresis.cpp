@@ -182,7 +182,7 @@ std::vector<Loop> loops(std::span<const double> strengths, std::span<const doubl
     Loop& loop = found[i];
     loop.corrected = p[i];
     const double level = Loop::level / static_cast<double>(found.size());
-    loop.detectable = loop.error.known()
+    loop.detectable = loop.error.known() && !std::isnan(loop.p)
                           ? loop.error.error * smallest_effect_found(level, loop.error.dof)
                           : std::numeric_limits<double>::infinity();
   }
@@ -198,8 +198,14 @@ std::string Loop::statement(const std::string& units) const {
     return fmt::format("the branches are equal in every realization, {} realizations",
                        realizations);
   }
-  if (std::isnan(corrected)) {
+  if (std::isnan(area)) {
     return fmt::format("cannot decide with {} realizations: the area is not known", realizations);
+  }
+  if (std::isnan(corrected)) {
+    return finite_text(
+        "cannot decide with {} realizations: the area is {:+.2g}{} in each, and without scatter it "
+        "has no error",
+        realizations, area, unit_behind(units));
   }
   if (corrected < level) {
     return finite_text("the branches differ: area {:+.2g}{} ({}, {} realizations)", area,

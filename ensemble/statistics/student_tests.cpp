@@ -76,9 +76,9 @@ ErrorOf combined(const ErrorOf& a, const ErrorOf& b) {
 }
 
 double p_value(double value, const ErrorOf& error) {
-  if (!error.known() || std::isnan(value)) return std::numeric_limits<double>::quiet_NaN();
+  if (!error.known() || std::isnan(value)) return not_a_number;
   if (value == 0) return 1;
-  return error.error > 0 ? tails(value / error.error, error.dof) : 0;
+  return error.error > 0 ? tails(value / error.error, error.dof) : not_a_number;
 }
 
 std::string p_text(double p) {

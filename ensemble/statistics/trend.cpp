@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "ensemble/moments.hpp"
 #include "ensemble/statistics/finite_text.hpp"
@@ -47,6 +48,21 @@ std::vector<double> block_means(std::span<const double> series, std::size_t leng
   }
   return means;
 }
+
+/// A change against 0, by an error of one kind.
+struct ChangeTest {
+  const Change& change;
+  const ErrorOf& error;
+  const char* name;
+  bool is_within;  // series, not over realizations
+
+  /// NaN without a test: realizations that all change by the same tell nothing of what chance would
+  /// make. A series that its line meets at every tap leaves nothing to chance.
+  double p() const {
+    const bool is_exact = is_within && error.known() && error.error == 0 && change.value != 0;
+    return is_exact ? 0 : p_value(change.value, error);
+  }
+};
 
 }  // namespace
 
@@ -134,19 +150,16 @@ Trend TrendTest::result() const {
     trend.share =
         std::min(1.0, trend.line.value * trend.line.value * (n * n - 1) / (12 * n * n) / variance);
   }
-  const struct {
-    const Change& change;
-    const ErrorOf& error;
-    const char* name;
-  } tests[] = {{trend.line, trend.line.scatter_error, "slope over realizations"},
-               {trend.line, trend.line.series_error, "slope within series"},
-               {trend.halves, trend.halves.scatter_error, "halves over realizations"},
-               {trend.halves, trend.halves.series_error, "halves within series"}};
+  const ChangeTest tests[] = {
+      {trend.line, trend.line.scatter_error, "slope over realizations", false},
+      {trend.line, trend.line.series_error, "slope within series", true},
+      {trend.halves, trend.halves.scatter_error, "halves over realizations", false},
+      {trend.halves, trend.halves.series_error, "halves within series", true}};
   double smallest = 2;
-  for (const auto& test : tests) {
-    if (!test.error.known()) continue;
+  for (const ChangeTest& test : tests) {
+    const double p = test.p();
+    if (std::isnan(p)) continue;
     ++trend.tests;
-    const double p = p_value(test.change.value, test.error);
     if (p >= smallest) continue;
     smallest = p;
     trend.decisive = test.name;
@@ -154,11 +167,11 @@ Trend TrendTest::result() const {
   }
   if (trend.tests > 0) trend.p = std::min(1.0, smallest * static_cast<double>(trend.tests));
   trend.detectable = std::numeric_limits<double>::infinity();
-  for (const ErrorOf& error : {trend.line.scatter_error, trend.line.series_error}) {
-    if (!error.known()) continue;
+  for (const ChangeTest& test : std::span(tests).first(2)) {
+    if (std::isnan(test.p())) continue;
     const double level = Trend::level / static_cast<double>(trend.tests);
     trend.detectable =
-        std::min(trend.detectable, error.error * smallest_effect_found(level, error.dof));
+        std::min(trend.detectable, test.error.error * smallest_effect_found(level, test.error.dof));
   }
   return trend;
 }

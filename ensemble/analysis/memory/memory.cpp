@@ -97,7 +97,7 @@ MemoryTest memory_test(std::span<const History> histories, std::vector<LagWindow
   for (std::size_t i = 0; i < p.size(); ++i) {
     AlignedDifference& found = test.differences[i];
     found.corrected = p[i];
-    found.detectable = found.error.known() && !std::isnan(found.value)
+    found.detectable = !std::isnan(found.p)
                            ? found.error.error * smallest_effect_found(level, found.error.dof)
                            : infinite;
   }
@@ -141,9 +141,10 @@ std::string MemoryTest::statement(const std::string& observable, const std::stri
       *std::ranges::max_element(differences, {}, &AlignedDifference::detectable);
   if (!std::isfinite(unseen.detectable)) {
     return fmt::format(
-        "cannot decide: {} at the switch differs by the same amount in every realization "
-        "between {} {} and {}, so that the difference at equal value has no error",
-        observable, control, name_of(unseen.first), name_of(unseen.second));
+        "cannot decide: {} {} by the same amount in every realization between {} {} and {}, so "
+        "that the difference at equal value has no error",
+        observable, std::isnan(unseen.value) ? "at the switch differs" : "after the switch differs",
+        control, name_of(unseen.first), name_of(unseen.second));
   }
   const double seen = unseen.detectable;
   if (!(seen <= response)) {

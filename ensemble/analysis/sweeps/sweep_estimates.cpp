@@ -88,7 +88,7 @@ std::pair<std::size_t, std::size_t> possibly_highest(const SweepCurve& curve) {
 }
 
 /// Probability that chance makes a straight line through points first .. last rise (sign 1) or fall
-/// (sign -1) like this one; 1 where they have no slope.
+/// (sign -1) like this one; 1 where they have no slope, NaN without a test.
 double p_of_slope(const SweepCurve& curve, std::size_t first, std::size_t last, double sign) {
   const std::size_t points = last + 1 - first;
   if (different_values(std::span(curve.x()).subspan(first, points)) < 2) return 1;
@@ -200,9 +200,10 @@ SweepExtremum highest(const SweepCurve& curve, std::size_t points, const Extremu
   // The top is where y is largest: each point between the ends could have been it.
   const auto top = static_cast<std::size_t>(std::ranges::max_element(y) - y.begin());
   const auto places = static_cast<double>(curve.n_points() - 2);
-  const double p =
-      std::max(p_of_slope(curve, first, top, 1), p_of_slope(curve, top, first + points - 1, -1));
-  if (curve.error_of(parabola.coefficients[2]).known()) found.p = std::min(1.0, places * p);
+  const double p_before = p_of_slope(curve, first, top, 1);
+  const double p_behind = p_of_slope(curve, top, first + points - 1, -1);
+  if (!std::isnan(p_before) && !std::isnan(p_behind))
+    found.p = std::min(1.0, places * std::max(p_before, p_behind));
   if (bend < 0 && std::abs(vertex) <= 1) {
     const Combination height =
         sum_of(sum_of(parabola.coefficients[0], vertex, parabola.coefficients[1]), vertex * vertex,
@@ -243,7 +244,7 @@ StraightLine straight_line(const SweepCurve& curve) {
   line.intercept = value_of(intercept, curve.fitted_y());
   line.slope_error = curve.error_of(slope);
   line.intercept_error = curve.error_of(intercept);
-  if (line.slope_error.known()) {
+  if (line.slope_error.known() && line.slope_error.error > 0) {
     test_line(curve, fit, line);
   } else {
     line.slope_error = scatter_error(curve, fit, slope);

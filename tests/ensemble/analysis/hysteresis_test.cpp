@@ -83,6 +83,16 @@ TEST_CASE("Branches of equal values are equal, in words without a number") {
   CHECK(found.statement() == "the branches are equal in every realization, 2 realizations");
 }
 
+TEST_CASE("An area without scatter has no p-value") {
+  const std::vector<double> strengths = {1, 2, 1}, values = {0, 0, 1, 1, 2, 2};
+  const Loop found = loops(strengths, values, 2).at(0);
+  CHECK(std::isnan(found.p));
+  CHECK(found.detectable == std::numeric_limits<double>::infinity());
+  CHECK(found.statement() ==
+        "cannot decide with 2 realizations: the area is +1 in each, and without scatter it has no "
+        "error");
+}
+
 TEST_CASE("Two realizations cannot decide on an area of eleven errors") {
   const std::vector<double> strengths = {1, 2, 1};
   const std::vector<double> values = {0, 0, 1, 1, 2, 2.4};

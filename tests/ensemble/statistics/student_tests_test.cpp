@@ -20,7 +20,7 @@ TEST_CASE("p-values are those of Student's t and of a normal variable") {
   CHECK(p_value(-2.2281388520, {1, 10}) == Approx(0.05).epsilon(1e-9));
   CHECK(p_value(1.959963985, {1, infinite}) == Approx(0.05).epsilon(1e-8));
   CHECK(p_value(0, {0, 3}) == 1);
-  CHECK(p_value(1, {0, 3}) == 0);
+  CHECK(std::isnan(p_value(1, {0, 3})));
   CHECK(std::isnan(p_value(1, {})));
 }
 

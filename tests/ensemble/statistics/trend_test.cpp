@@ -63,6 +63,15 @@ TEST_CASE("A series that changes without scatter is not constant, and every chan
       "the test finds drifts of 0 or more over the taps (80 % power), 0 times the scatter"));
 }
 
+TEST_CASE("Realizations that change alike prove no drift by their scatter") {
+  std::vector<double> step(64, 1);  // an integer observable, which changes at one tap
+  std::fill(step.begin() + 40, step.end(), 2);
+  const Trend trend = trend_of({step, step});
+  CHECK(trend.line.scatter_error.error == 0);
+  CHECK(trend.tests == (trend.line.series_error.known() ? 2 : 0));
+  CHECK(trend.p > 1e-6);
+}
+
 TEST_CASE("A constant series does not drift") {
   const Trend trend = trend_of({std::vector<double>(64, 0.1), std::vector<double>(64, 0.3)});
   CHECK(trend.line.value == 0);

@@ -41,6 +41,28 @@ std::vector<std::vector<double>> noisy_bell(std::uint64_t seed, std::size_t real
 
 }  // namespace
 
+TEST_CASE("Realizations that do not differ prove no extremum and no difference") {
+  // Layers that have grown, in two realizations, against the strength.
+  const std::vector<std::vector<double>> layers = {{5, 5}, {2, 2}, {1, 1}, {1, 1}, {1, 1}};
+  const std::vector<double> x = {0.05, 0.1, 0.15, 0.2, 0.25};
+  for (const Streams streams : {Streams::matched, Streams::independent}) {
+    const SweepCurve curve(x, layers, streams);
+    for (const SweepExtremum& found : {maximum(curve, 5), minimum(curve, 5)}) {
+      CHECK(std::isnan(found.p));
+      CHECK(found.verdict.starts_with("cannot decide"));
+    }
+    const std::vector<SweepDifference> found = differences(curve, std::nullopt);
+    CHECK(std::isnan(found[0].corrected));
+    CHECK(found[2].corrected == 1);
+    // The line's errors come from the scatter about it.
+    const StraightLine line = straight_line(curve);
+    CHECK(line.slope == Approx(-18));
+    CHECK(line.slope_error.error == Approx(std::sqrt(3.9 / 3 / 0.025)));
+    CHECK(line.slope_error.dof == 3);
+    CHECK(std::isnan(line.p));
+  }
+}
+
 TEST_CASE("The maximum of a parabola is found exactly, its points in any order") {
   std::vector<double> x = {0.3, 0.05, 0.1, 0.2, 0.15, 0.24}, y;
   for (const double abscissa : x) y.push_back(bell(abscissa));
