@@ -23,7 +23,11 @@ namespace jostle::inline cli {
 bool keep_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
                  const Provenance& provenance, const Patience& patience) {
   try {
-    store_tables(path, group, tables, provenance, patience);
+    const std::vector<std::string> left =
+        store_tables(path, group, tables, provenance, patience, StoredResults::left);
+    for (const std::string& name : left)
+      print_to_standard_error(
+          fmt::format("jostle: /{}/{} stays as an earlier command made it\n", group, name));
     return true;
   } catch (const ResultsError& error) {
     print_to_standard_error(fmt::format("jostle: the tables are not stored under /{}: {}\n", group,

@@ -12,7 +12,6 @@
 #include "cli/terminal/exit_codes.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
-#include "study/tables/analyse.hpp"
 
 namespace jostle::inline cli {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -27,5 +28,11 @@ struct Table {
   /// Settings and results in words: "observable", "verdict", ...
   std::vector<std::pair<std::string, std::string>> notes{};
 };
+
+/// Whether the table holds results, and not the reason why there are none, its note "refused".
+inline bool is_made(const Table& table) {
+  return std::ranges::none_of(table.notes,
+                              [](const auto& note) { return note.first == "refused"; });
+}
 
 }  // namespace jostle::inline ensemble

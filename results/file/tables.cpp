@@ -82,6 +82,13 @@ Hdf5Handle group_at(hid_t parent, const std::string& path) {
   return slash == std::string::npos ? std::move(group) : group_at(group, path.substr(slash + 1));
 }
 
+bool has_results(hid_t parent, const std::string& name) {
+  if (!exists(parent, name)) return false;
+  const Hdf5Handle table = open_group(parent, name);
+  return checked(H5Aexists(table, quantities_attribute)) > 0 &&
+         !read_texts_attribute(table, quantities_attribute).empty();
+}
+
 void write_table(hid_t parent, const Table& table, const Provenance& provenance) {
   if (exists(parent, table.name)) checked(H5Ldelete(parent, table.name.c_str(), H5P_DEFAULT));
   const Hdf5Handle group = group_at(parent, table.name);
@@ -185,14 +192,16 @@ void for_each_table(hid_t group, const std::string& path, Walk& walk, const Visi
 
 }  // namespace
 
-void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
-                  const Provenance& provenance, const Patience& patience) {
+std::vector<std::string> store_tables(const std::string& path, const std::string& group,
+                                      std::span<const Table> tables, const Provenance& provenance,
+                                      const Patience& patience, StoredResults stored) {
   const TableGroup table_group{group, {tables.begin(), tables.end()}};
-  store_tables(path, std::span(&table_group, 1), provenance, patience);
+  return store_tables(path, std::span(&table_group, 1), provenance, patience, stored);
 }
 
-void store_tables(const std::string& named, std::span<const TableGroup> groups,
-                  const Provenance& provenance, const Patience& patience) {
+std::vector<std::string> store_tables(const std::string& named, std::span<const TableGroup> groups,
+                                      const Provenance& provenance, const Patience& patience,
+                                      StoredResults stored) {
   std::vector<std::string> names;
   for (const TableGroup& group : groups) {
     names.push_back(group.name);
@@ -206,17 +215,24 @@ void store_tables(const std::string& named, std::span<const TableGroup> groups,
   remove_stale_temporaries(path);
   TemporaryFile temporary(path);
   copy_intact(path, temporary);
+  std::vector<std::string> left;
   naming_file(temporary.name(), [&] {
     WritableHdf5File file(temporary.name(), WritableHdf5File::Begin::as_it_is);
     for (const TableGroup& group : groups) {
       const Hdf5Handle parent = group_at(file, group.name);
-      for (const Table& table : group.tables) write_table(parent, table, provenance);
+      for (const Table& table : group.tables) {
+        if (stored == StoredResults::left && !is_made(table) && has_results(parent, table.name))
+          left.push_back(table.name);
+        else
+          write_table(parent, table, provenance);
+      }
     }
     update_contents(file, names);
     file.close();
   });
   seal(temporary.name());
   temporary.publish();
+  return left;
 }
 
 std::vector<Table> ResultsFile::tables(const std::string& group) const {

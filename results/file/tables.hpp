@@ -20,19 +20,25 @@ struct TableGroup {
   std::vector<Table> tables;
 };
 
+/// What becomes of a table with results when one of its name without any is to be stored.
+enum class StoredResults { replaced, left };
+
 /// Puts the tables into `group` of the results file: /<group>/<table name>/<axis or quantity>,
 /// axes as dimension scales, notes as attributes of the table. A table of the same name is
-/// replaced, others stay. Every table records its origin: attributes version, git_revision,
-/// command_line, made. The file is never written in place: a changed copy is published over it.
-/// Throws ResultsError; LockHeld where another process holds the file's lock for longer than
-/// `patience` lasts; std::invalid_argument for a quantity whose number of values its axes do not
-/// give.
-void store_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
-                  const Provenance& provenance, const Patience& patience = {});
+/// replaced, except as `stored` says; others stay. Returns the names of those that were left. Every
+/// table records its origin: attributes version, git_revision, command_line, made. The file is
+/// never written in place: a changed copy is published over it. Throws ResultsError; LockHeld where
+/// another process holds the file's lock for longer than `patience` lasts; std::invalid_argument
+/// for a quantity whose number of values its axes do not give.
+std::vector<std::string> store_tables(const std::string& path, const std::string& group,
+                                      std::span<const Table> tables, const Provenance& provenance,
+                                      const Patience& patience = {},
+                                      StoredResults stored = StoredResults::replaced);
 
 /// Like store_tables(), for several groups in one replacement of the file.
-void store_tables(const std::string& path, std::span<const TableGroup> groups,
-                  const Provenance& provenance, const Patience& patience = {});
+std::vector<std::string> store_tables(const std::string& path, std::span<const TableGroup> groups,
+                                      const Provenance& provenance, const Patience& patience = {},
+                                      StoredResults stored = StoredResults::replaced);
 
 /// The tables of a group, in the order of their names; none where there is no such group. Throws
 /// ResultsError.

@@ -183,9 +183,4 @@ std::optional<Verdict> steadiness(const ObservableSeries& series, const Analysed
   return test.result().verdict();
 }
 
-bool is_made(const Table& table) {
-  return std::ranges::none_of(table.notes,
-                              [](const auto& note) { return note.first == "refused"; });
-}
-
 }  // namespace jostle::inline study

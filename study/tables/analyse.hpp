@@ -34,7 +34,4 @@ AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint
 /// few for it.
 std::optional<Verdict> steadiness(const ObservableSeries& series, const AnalysedSeries& taps);
 
-/// True if the table holds an analysis, and no refusal.
-bool is_made(const Table& table);
-
 }  // namespace jostle::inline study

@@ -95,6 +95,28 @@ TEST_CASE("storing again replaces a table and leaves the others") {
   CHECK(digest_of(path) == digest);
 }
 
+TEST_CASE("a table without results replaces one with results only where it is to") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.h5";
+  synthetic::run_to_end(path);
+  const Table refused{.name = "b/c", .notes = {{"refused", "too few taps"}}};
+  const std::vector<Table> none{refused};
+  const auto leave = [&](const std::vector<Table>& tables) {
+    return store_tables(path, "fits", tables, synthetic::provenance(), {}, StoredResults::left);
+  };
+  CHECK(leave(none).empty());
+  check_same(read_tables(path, "fits").at(0), refused);
+  CHECK(leave({sample("b/c", 1)}).empty());
+  CHECK(leave({refused, sample("a", 2)}) == std::vector<std::string>{"b/c"});
+  CHECK(leave({sample("b/c", 3)}).empty());
+  const auto fits = read_tables(path, "fits");
+  REQUIRE(fits.size() == 2);
+  check_same(fits[0], sample("a", 2));
+  check_same(fits[1], sample("b/c", 3));
+  store(path, "fits", none);
+  check_same(read_tables(path, "fits").at(1), refused);
+}
+
 TEST_CASE("a file does not grow with the number of times its tables were replaced") {
   const TemporaryFolder folder;
   const std::string path = folder / "a.h5";
