@@ -104,16 +104,30 @@ void add_single(const char* name, double value, const char* long_name, Measureme
       {.name = name, .values = {value}, .units = units, .long_name = long_name, .source = source});
 }
 
+/// Where bins of free volumes end: they hold all of a bed of equal spheres, and of loose packings
+/// and small spheres among large ones up to 50 sphere volumes.
+double end_of_free_volumes(const std::vector<double>& free_volumes) {
+  constexpr double of_beds = 2, largest = 50;
+  return std::clamp(std::floor(std::ranges::max(free_volumes)) + 1, of_beds, largest);
+}
+
+double share_beyond(const std::vector<double>& values, std::size_t n_bins, double bin_width) {
+  const auto beyond = std::ranges::count_if(
+      values, [&](double value) { return value / bin_width >= static_cast<double>(n_bins); });
+  return static_cast<double>(beyond) / static_cast<double>(values.size());
+}
+
 }  // namespace
 
 Measurement measure_part(MeasuredPacking& measured, const VoronoiSettings& settings) {
-  constexpr double fraction_bin = 0.01, largest_free_volume = 2;
+  constexpr double fraction_bin = 0.01;
   // A dodecahedron about an equal sphere has 0.755; small spheres fill more about large ones.
   const std::size_t n_fractions = measured.packing.sizes ? 100 : 76;
   const InnerCells inner = inner_cells(measured, settings);
   if (inner.volumes.empty()) throw std::invalid_argument("no whole cell lies in the region");
   const std::vector<double> faces = shares(inner.face_counts);
-  const auto n_free = static_cast<std::size_t>(largest_free_volume / settings.bin_width + 0.5);
+  const double end_of_free = end_of_free_volumes(inner.free_volumes);
+  const auto n_free = static_cast<std::size_t>(std::ceil(end_of_free / settings.bin_width - 0.5));
   Measurement measurement;
   measurement.places = {
       {"faces", whole_numbers(faces.size()), "1", "faces of a cell, without the tiniest"},
@@ -148,6 +162,9 @@ Measurement measure_part(MeasuredPacking& measured, const VoronoiSettings& setti
              "Rosato et al. 2010, fig. 9", "sphere volumes");
   add_single("sigma_free_volume", sigma, "population deviation (1/n) of the free volumes of cells",
              measurement, "", "sphere volumes");
+  add_single("free_volume_beyond", share_beyond(inner.free_volumes, n_free, settings.bin_width),
+             "fraction of cells whose free volume is beyond the bins of the density", measurement);
+  measurement.quantities.back().is_compared = false;
   add_single("mean_local_fraction", mean_of(inner.fractions), "mean local packing fraction",
              measurement);
   const bool varies = sigma > 1e-6 * free_mean;  // not so in a perfect crystal

@@ -259,6 +259,10 @@ TEST_CASE("structure: cells by kind are those of the single cells") {
   const auto all = measure(packing, settings, points);
   const Measurement& voronoi = part(all, "voronoi");
   CHECK(voronoi.find("k") == nullptr);  // defined for equal spheres
+  double density = 0;
+  for (const double value : values(voronoi, "free_volume_density")) density += value;
+  CHECK(values(voronoi, "free_volume_beyond")[0] == 0);
+  CHECK(density * settings.voronoi->bin_width == Approx(1).epsilon(1e-12));
   const VoronoiCells cells = voronoi_cells(packing);
   double volumes[2] = {}, counts[2] = {};
   for (std::size_t i = 0; i < cells.size(); ++i) {
