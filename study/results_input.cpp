@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 
+#include "results/disk/publish.hpp"
 #include "results/disk/seal.hpp"
 #include "results/run/live_run.hpp"
 
@@ -51,7 +53,9 @@ std::string known(const Study& study) {
 
 bool is_results_file(const std::string& path) {
   std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) return false;  // and nothing is taken out of a pipe
+  const fs::file_status status = fs::status(path, ignored);
+  if (status.type() == fs::file_type::not_found) fail_on_disk(path, "open", ENOENT);
+  if (!fs::is_regular_file(status)) return false;  // and nothing is taken out of a pipe
   return is_hdf5_file(path);
 }
 

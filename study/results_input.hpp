@@ -11,7 +11,7 @@
 // Sources of results.
 namespace jostle::inline study {
 
-/// By its first bytes.
+/// By its first bytes. Throws ResultsError where there is no such file.
 bool is_results_file(const std::string& path);
 
 /// True if two names refer to one file, existing or not.

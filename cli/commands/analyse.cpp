@@ -106,6 +106,8 @@ int run_analyses(const AnalyseArguments& arguments, const Analyses& analyses) {
 /// All files together; stored where they are one.
 int run_sweep(const AnalyseArguments& arguments) {
   require_files(arguments);
+  if (!arguments.point.empty())
+    throw BadInput("--sweep-point: a sweep compares all points of its files; leave it out");
   const Provenance provenance = provenance_of_this_run("");
   SweepSettings settings{.quantity = arguments.quantity,
                          .against = arguments.against,
@@ -146,6 +148,7 @@ std::string file_or_kind_fault(const std::string& text) {
   std::error_code unreadable;
   if (std::filesystem::exists(text, unreadable) && !std::filesystem::is_directory(text, unreadable))
     return {};
+  if (text.ends_with(".h5")) return {};  // is refused where it is opened
   const std::vector<std::string> kinds{"steady",   "spectrum", "ageing",  "hysteresis", "motion",
                                        "ordering", "sweep",    "volumes", "memory"};
   if (std::ranges::find(kinds, text) != kinds.end())

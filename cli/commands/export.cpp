@@ -61,14 +61,22 @@ struct Wanted {
   std::string suffix;  // distinguishes the default name from those of other packings of the file
 };
 
+/// The first without a choice.
+std::uint32_t one_point(const Study& study, const std::string& wanted) {
+  if (wanted.empty()) return 0;
+  const std::vector<std::uint32_t> chosen = chosen_points(study, wanted);
+  if (chosen.size() == 1) return chosen.front();
+  throw BadInput(fmt::format(
+      "--sweep-point {}: points {} have it, and packings of one are exported: choose by number",
+      wanted, fmt::join(chosen, ", ")));
+}
+
 Wanted wanted(const ExportArguments& arguments) {
   const KeptTaps taps = tap_choice(arguments.taps);
   const std::string& input = arguments.input;
   if (is_results_file(input)) {
     const ResultsFile file = open_to_read(input, arguments.live);
-    const std::uint32_t point =
-        arguments.point.empty() ? 0 : chosen_points(file.study(), arguments.point).front();
-    const RealizationId id{point, arguments.realization};
+    const RealizationId id{one_point(file.study(), arguments.point), arguments.realization};
     Wanted found{kept_frames(file, id, taps),
                  fmt::format("sweep point {}, realization {}, tap", id.point, id.realization), ""};
     if (file.study().points.size() > 1) found.suffix += fmt::format("_point{}", id.point);
@@ -155,7 +163,6 @@ void add_export(Command& app, int& code) {
   ExportArguments& a = *arguments;
   command.add_option("file", a.input, "Results, or a packing in extended XYZ")
       .required()
-      .existing_file()
       .offers_files({"h5", "xyz", "extxyz"});
   command
       .add_option("--format", a.format,

@@ -323,7 +323,6 @@ void add_fit(Command& app, int& code) {
       .add_option("input", a.input,
                   "Results, or a text file with columns t, X and maybe sigma (or --realizations)")
       .required()
-      .existing_file()
       .offers_files({"h5", "csv", "txt"});
   command.add_option("--observable", a.observable, "Observable of the results to fit");
   command.add_option("--sweep-point", a.point,

@@ -82,7 +82,6 @@ void add_report(Command& app, int& code) {
   ReportArguments& a = *arguments;
   command.add_option("file", a.inputs, "Results; several are shown one after another")
       .required()
-      .existing_file()
       .offers_files({"h5"});
   Option output = command.add_option(
       "-o,--output", a.output,

@@ -120,7 +120,6 @@ void add_structure(Command& app, int& code) {
       .add_option("input", a.inputs,
                   "Results, or packings in extended XYZ, one file per realization")
       .required()
-      .existing_file()
       .offers_files({"h5", "xyz", "extxyz"});
   command
       .add_option("--part", a.parts,

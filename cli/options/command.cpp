@@ -138,11 +138,6 @@ Option& Option::one_of(const std::vector<std::string>& words) {
   return offers(words);
 }
 
-Option& Option::existing_file() {
-  option_->check(CLI::ExistingFile);
-  return offers_files({});
-}
-
 Option& Option::file_to_write() {
   check(file_name_fault, "");
   return offers_files({});

@@ -37,7 +37,6 @@ class Option {
   Option& whole_from(std::uint64_t least);
   Option& positive_number();
   Option& one_of(const std::vector<std::string>& words);
-  Option& existing_file();
   /// A file's name: neither empty nor "-", which stands for no stream here.
   Option& file_to_write();
   /// `fault` describes the fault of a text; nothing if it is valid. `type` is shown in the help.

@@ -151,6 +151,14 @@ class Analyses(Analysed):
                            "--band", "0.3:0.1", expect=BAD_INPUT)
         self.assertIn("--band", done.stderr)
 
+    def test_a_sweep_has_no_sweep_point(self):
+        self.write(TAPPED)
+        self.run_scene()
+        done = self.jostle("analyse", "tiny.h5", "sweep", "--observable", "mean_height",
+                           "--sweep-point", "1", expect=BAD_INPUT)
+        self.assertIn("--sweep-point: a sweep compares all points", done.stderr)
+        self.assertEqual(self.tables(), [])
+
     def test_ageing_is_the_mean_squared_change_over_realizations(self):
         self.write(TAPPED)
         self.run_scene()

@@ -243,7 +243,12 @@ class Information(Case):
     def test_what_is_no_results_file_is_refused_by_name(self):
         self.write("not HDF5", "text.h5")
         self.assertIn("text.h5", self.jostle("info", "text.h5", expect=BROKEN).stderr)
-        self.assertIn("none.h5", self.jostle("info", "none.h5", expect=BROKEN).stderr)
+        for command in (["info"], ["report"], ["structure"], ["export", "--format", "extxyz"],
+                        ["fit", "--observable", "mean_height"]):
+            self.assertEqual(self.jostle(*command, "none.h5", expect=BROKEN).stderr,
+                             "jostle: none.h5: cannot open: No such file or directory\n")
+        self.jostle("analyse", "none.h5", "steady", "--observable", "mean_height", expect=BROKEN)
+        self.jostle("fit", "none.csv", expect=BROKEN)
 
     def test_a_damaged_file_is_refused(self):
         self.write(TINY)

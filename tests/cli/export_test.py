@@ -119,6 +119,15 @@ class Export(Case):
         self.assertEqual(bits(self.arrays("all.vtp")[0]["Points"]),
                          bits(x for centre in self.centres(frame=0) for x in centre))
 
+    def test_a_value_that_several_sweep_points_have_chooses_none(self):
+        self.write(changed(TINY, sweep={"/protocol/0/tap/dilate": [0.05, 0.1], "/container/width": [4, 5]},
+                           snapshots={"taps": [0]}))
+        self.run_scene("-o", "two.h5")
+        refused = self.jostle("export", "two.h5", "--format", "extxyz", "--sweep-point", "dilate=0.05",
+                              expect=BAD_INPUT)
+        self.assertIn("--sweep-point dilate=0.05: points 0, 1 have it", refused.stderr)
+        self.jostle("export", "two.h5", "--format", "extxyz", "--sweep-point", "1")
+
     def test_files_that_exist_are_kept_without_force(self):
         (self.folder / "tiny_point0.pvd").write_text("mine")
         refused = ["export", "tiny.h5", "--format", "vtp", "--tap", "all"]

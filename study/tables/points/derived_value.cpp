@@ -104,6 +104,12 @@ bool is_restated_as(const Table& fit, const std::string& law) {
   });
 }
 
+std::string note_of(const Table& table, const char* key) {
+  const auto found =
+      std::ranges::find(table.notes, key, [](const auto& entry) { return entry.first; });
+  return found == table.notes.end() ? "" : found->second;
+}
+
 std::optional<DerivedValue> parameter(const Table& table, const std::string& name,
                                       const std::string& prefix) {
   const auto point = point_along(table, name, prefix);
@@ -112,17 +118,14 @@ std::optional<DerivedValue> parameter(const Table& table, const std::string& nam
                       .error = point->error,
                       .label = {name, point->units, parameter_of_a_fit, ""},
                       .no_value = point->no_value,
-                      .error_is_no_basis = point->no_value.empty() && !point->error.known()};
+                      .error_is_no_basis = point->no_value.empty() && !point->error.known(),
+                      .law = prefix.empty() ? note_of(table, "law") : "",
+                      .range = note_of(table, "range")};
 }
 
 void set_steadiness(const Table& table, DerivedValue& value) {
-  const auto note = [&](const char* key) {
-    const auto found =
-        std::ranges::find(table.notes, key, [](const auto& entry) { return entry.first; });
-    return found == table.notes.end() ? "" : found->second;
-  };
-  value.taps = note("taps");
-  const std::string verdict = note("verdict");
+  value.taps = note_of(table, "taps");
+  const std::string verdict = note_of(table, "verdict");
   value.steady = verdict.starts_with("reached")       ? Verdict::reached
                  : verdict.starts_with("not reached") ? Verdict::not_reached
                                                       : Verdict::cannot_decide;

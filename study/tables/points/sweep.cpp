@@ -41,6 +41,7 @@ struct Member {
   std::string no_value;            // why it has none, where that is known
   std::string copies;              // text of ObservableSeries::copies()
   bool error_is_no_basis = false;  // a fit's, of too few realizations
+  std::string law, range;          // of a fit: DerivedValue
 };
 
 /// The mean of the last taps that the points have in common, of each realization.
@@ -74,6 +75,8 @@ void set(Member& member, DerivedValue&& derived) {
   member.error_is_no_basis = derived.error_is_no_basis;
   member.taps = std::move(derived.taps);
   member.steady = derived.steady;
+  member.law = std::move(derived.law);
+  member.range = std::move(derived.range);
 }
 
 /// The point of the curve at this place of its axis, to the four digits that tables have of it,
@@ -137,6 +140,35 @@ void add_steadiness(std::span<const Member> members, Table& table) {
     if (key == "maximum" || key == "minimum") note += "; " + condition;
 }
 
+/// What the points have of one kind, each with the places that have it: "1:60 at dilate = 0.02, 0.1;
+/// 1:10 at dilate = 0.3". Empty where all have the same.
+std::string different(std::span<const Member> members, std::string Member::*kind) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> places;
+  for (const Member& member : members) {
+    const std::string& text = member.*kind;
+    if (text.empty()) continue;
+    auto found = std::ranges::find(places, text, [](const auto& place) { return place.first; });
+    if (found == places.end()) found = places.insert(found, {text, {}});
+    found->second.push_back(finite_text("{:.4g}", member.place.x));
+  }
+  if (places.size() < 2) return "";
+  std::vector<std::string> texts;
+  for (const auto& [text, at] : places)
+    texts.push_back(
+        fmt::format("{} at {} = {}", text, members.front().place.swept.name, joined(at, ", ")));
+  return joined(texts, "; ");
+}
+
+/// Parameters of fits to different ranges of t are different numbers where the law is not the true
+/// one: the verdicts on a maximum and a minimum report it.
+void add_ranges(std::span<const Member> members, Table& table) {
+  const std::string ranges = different(members, &Member::range);
+  if (ranges.empty()) return;
+  table.notes.emplace_back("ranges", "different: " + ranges);
+  for (auto& [key, note] : table.notes)
+    if (key == "maximum" || key == "minimum") note += "; the fits have different ranges of t";
+}
+
 /// The averaged taps, and points without a value.
 void add_notes(std::span<const Member> members, Table& table) {
   std::vector<std::string> taps;
@@ -163,6 +195,9 @@ void add_notes(std::span<const Member> members, Table& table) {
 
 Table curve_table(std::string name, std::span<const Member> members,
                   const std::optional<double>& reference) {
+  if (const std::string laws = different(members, &Member::law); !laws.empty())
+    throw BadInput(fmt::format(
+        "the points have fits of different laws, {}: fit one law at every point", laws));
   std::vector<double> x, y;
   std::vector<ErrorOf> y_error;
   std::vector<std::vector<double>> realizations;
@@ -189,6 +224,7 @@ Table curve_table(std::string name, std::span<const Member> members,
   const Member& first = valued == members.end() ? members.front() : *valued;
   Table table = sweep_table(std::move(name), first.place.swept, first.label, curve, point);
   add_notes(members, table);
+  add_ranges(members, table);
   add_steadiness(members, table);
   PointNotes copies;
   for (const Member& member : members) {
