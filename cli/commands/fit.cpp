@@ -147,9 +147,13 @@ void refuse_options_of_results(const FitArguments& arguments) {
   }
   if (arguments.resampling_asked_for && !arguments.realizations) {
     throw BadInput(fmt::format(
-        "{}: not a results file, and without realizations (--realizations) that --resample, "
-        "--resamples or --seed could be of",
+        "{}: not a results file, and without realizations (--realizations) that --resample could "
+        "be of",
         arguments.input));
+  }
+  if (arguments.not_stored || arguments.live == Live::yes) {
+    throw BadInput(fmt::format("{}: not a results file: --no-store and --live mean nothing",
+                               arguments.input));
   }
   if (arguments.gaps_asked_for && !arguments.realizations) {
     throw BadInput("--gaps applies only to columns of realizations: add --realizations");
@@ -383,8 +387,9 @@ void add_fit(Command& app, int& code) {
       "docs/reference/laws.md.\n"
       "Exit code 2 where no law could be fitted.");
   command.run([=, &code] {
-    arguments->resampling_asked_for = (resample.count() > 0 && arguments->resample != "none") ||
-                                      count.count() > 0 || seed.count() > 0;
+    if (arguments->resample != "bootstrap" && (count.count() > 0 || seed.count() > 0))
+      throw BadInput("--resamples and --seed apply only to --resample bootstrap: add it");
+    arguments->resampling_asked_for = resample.count() > 0 && arguments->resample != "none";
     arguments->gaps_asked_for = gaps.count() > 0;
     code = run_fits(*arguments);
   });

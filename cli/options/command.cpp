@@ -174,7 +174,7 @@ Option Command::add_option(const std::string& name, T& value, const std::string&
 
 template <class T>
 Option Command::add_hidden_option(const std::string& name, T& value) {
-  return Option(with_plain_numbers<T>(*app_->add_option(name, value)->group("")));
+  return Option(with_plain_numbers<T>(*app_->add_option(name, value)->group(hidden_group)));
 }
 
 #define JOSTLE_OPTION_OF(T)                                                        \
@@ -248,7 +248,7 @@ std::size_t Command::count(const std::string& option) const {
 std::vector<std::string> Command::hidden_options_given() const {
   std::vector<std::string> names;
   for (const CLI::Option* option : std::as_const(*app_).get_options())
-    if (option->count() > 0 && option->get_group().empty())
+    if (option->count() > 0 && option->get_group() == hidden_group)
       names.push_back("--" + option->get_single_name());
   return names;
 }

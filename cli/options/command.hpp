@@ -16,6 +16,9 @@ class Option;
 // sees them: only the sources of this folder do.
 namespace jostle::inline cli {
 
+/// The group of options that the help does not show. A parser's message names them.
+inline constexpr const char* hidden_group = "hidden";
+
 /// Thrown by the reader of Command::add_reader: the fault of the text, without the option's name.
 class BadValue : public std::runtime_error {
  public:

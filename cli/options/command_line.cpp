@@ -85,10 +85,22 @@ std::vector<std::string> words_for_parser(const CLI::App& app, int argc, char** 
   return words;
 }
 
+/// The help without hidden options.
+class HelpText : public CLI::Formatter {
+ public:
+  std::string make_group(std::string group, bool is_positional,
+                         std::vector<const CLI::Option*> options) const override {
+    if (group == hidden_group) return "";
+    return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
+  }
+};
+
 }  // namespace
 
 CommandLine::CommandLine(const std::string& name, const std::string& description)
-    : app_(std::make_unique<CLI::App>(description, name)) {}
+    : app_(std::make_unique<CLI::App>(description, name)) {
+  app_->formatter(std::make_shared<HelpText>());
+}
 CommandLine::~CommandLine() = default;
 
 Command CommandLine::program() {

@@ -48,7 +48,7 @@ OptionText text_of(CLI::Option& option) {
 CommandText text_of(CLI::App& app) {
   CommandText text{app.get_name(), app.get_description(), app.get_footer(), {}, {}, {}};
   for (CLI::Option* option : app.get_options()) {
-    if (option->get_group().empty()) continue;
+    if (option->get_group() == hidden_group) continue;
     (option->nonpositional() ? text.options : text.positionals).push_back(text_of(*option));
   }
   for (CLI::App* command : app.get_subcommands({})) text.commands.push_back(text_of(*command));

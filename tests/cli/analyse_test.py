@@ -84,6 +84,8 @@ class Analyses(Analysed):
                              "steady has no option --band"),
                             (["--last", "64", "steady", "--last", "65", "--observable",
                               "mean_height"], "--last is there twice"),
+                            (["steady", "--segment", "5", "--observable", "mean_height"],
+                             "--segment: Value 5 not in range"),
                             (["steady"], "--observable is required")):
             done = self.jostle("analyse", "tiny.h5", *wrong, expect=BAD_INPUT)
             self.assertIn(said, done.stderr)
