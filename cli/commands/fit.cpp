@@ -152,8 +152,8 @@ void refuse_options_of_results(const FitArguments& arguments) {
         arguments.input));
   }
   if (arguments.not_stored || arguments.live == Live::yes) {
-    throw BadInput(fmt::format("{}: not a results file: --no-store and --live mean nothing",
-                               arguments.input));
+    throw BadInput(
+        fmt::format("{}: not a results file: --no-store and --live mean nothing", arguments.input));
   }
   if (arguments.gaps_asked_for && !arguments.realizations) {
     throw BadInput("--gaps applies only to columns of realizations: add --realizations");

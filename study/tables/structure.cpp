@@ -153,15 +153,18 @@ void add_terms(Table& table) {
       "Bideau 2001, fitted to the profile with its free surface");
 }
 
+/// What a part was measured with.
+void add_settings(std::string_view part, const StructureSettings& settings, Table& table) {
+  table.notes.emplace_back("settings", resolved(settings).at(std::string(part)).dump());
+  table.notes.emplace_back("region", region_note(part, settings));
+}
+
 /// The tables, each with what it was measured with.
 std::vector<Table> tables_of(const std::string& prefix, const EnsembleStructure& structure,
                              const StructureSettings& settings) {
-  const auto written = resolved(settings);
   std::vector<Table> tables = structure_tables(prefix, structure, settings);
   for (Table& table : tables) {
-    const Json* part = written.find(table.name.substr(prefix.size()));
-    table.notes.emplace_back("settings", part->dump());
-    table.notes.emplace_back("region", region_note(table.name.substr(prefix.size()), settings));
+    add_settings(table.name.substr(prefix.size()), settings, table);
     add_terms(table);
   }
   return tables;
@@ -235,10 +238,14 @@ KeptEnsemble ensemble_at(const ResultsFile& file, std::uint32_t point) {
 
 /// Differences between the points. If the scene cannot be read, it is unknown whether realizations
 /// are pairs, and there is no comparison.
-std::vector<Table> comparisons_of(const ResultsFile& file, std::span<const ComparedPoint> numbers) {
+std::vector<Table> comparisons_of(const ResultsFile& file, std::span<const ComparedPoint> numbers,
+                                  const StructureSettings& settings) {
   const ParsedScene parsed = parse_scene(file.study().resolved_scene);
   if (!parsed.scene) return {};
-  return comparison_tables(numbers, parsed.scene->streams);
+  std::vector<Table> tables = comparison_tables(numbers, parsed.scene->streams);
+  for (Table& table : tables)
+    add_settings(table.name.substr(table.name.find('/') + 1), settings, table);
+  return tables;
 }
 
 /// The kinds of a mixture in their order, or that there are none.
@@ -299,7 +306,7 @@ std::vector<Table> structure_of(const ResultsFile& file, std::span<const std::ui
       tables.push_back(std::move(table));
     }
   }
-  for (Table& table : comparisons_of(file, numbers)) tables.push_back(std::move(table));
+  for (Table& table : comparisons_of(file, numbers, settings)) tables.push_back(std::move(table));
   return tables;
 }
 

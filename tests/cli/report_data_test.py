@@ -30,6 +30,37 @@ class Data(Report):
         run = self.data(self.page("everything.h5")[0])["files"][0]
         self.assertEqual(run["summary"], self.run_data["summary"])
 
+    def test_points_measured_with_other_settings_are_not_drawn_beside_each_other(self):
+        for others in (["--settings", '{"coordination": {}}'],
+                       ["--settings", '{"coordination": {"cut": 1.3}}', "--sweep-point", 2]):
+            self.jostle("structure", "everything.h5", "--part", "coordination", *others)
+        with h5py.File(self.folder / "everything.h5") as file:
+            settings = file["structure/comparison/coordination"].attrs["note_settings"]
+        self.assertNotEqual(json.loads(settings)["cut"], 1.3)
+        run = self.data(self.page("everything.h5")[0])["files"][0]
+        panel = panel_of(run, "number-of-neighbours-sweep-points-after-60-taps")
+        self.assertEqual([series["point"] for series in panel["series"]], [0, 1])
+        self.assertTrue(panel["caption"].endswith("Measured with other settings, and left out: ε = 0.1."))
+        (section,) = [one for one in run["sections"] if one["id"] == "coordination"]
+        self.assertIn("after 60 taps, measured with " + json.dumps(settings)[1:-1],
+                      json.dumps(section, ensure_ascii=False))
+
+    def test_a_law_that_was_not_compared_is_not_called_as_good_as_others(self):
+        def answer(file):
+            blocks = self.data(self.page(file)[0])["files"][0]["summary"]["blocks"]
+            return dict(blocks[0]["rows"])["law"].split(" at ")[0]
+
+        line = ("--law", "a + b*log(t)", "--start", "a=4,b=-0.1", "--sweep-point", "0")
+        self.write({key: value for key, value in EVERYTHING.items() if key not in ("sweep", "fits", "analyse")},
+                   "plain.json")
+        self.run_scene("-o", "plain.h5", scene="plain.json")
+        self.jostle("fit", "plain.h5", "--observable", "mean_height", *line)
+        self.assertIn("own law (no other law fitted)", answer("plain.h5"))
+        self.jostle("fit", "plain.h5", "--observable", "mean_height", "--model", "kww")
+        self.assertIn("stretched exponential or own law (not compared)", answer("plain.h5"))
+        self.jostle("fit", "plain.h5", "--observable", "mean_height")
+        self.assertRegex(answer("plain.h5"), r"; own law not compared with them\)")
+
     def curves(self):
         points = self.run_data["curve_points"]
         self.assertEqual([(one["number"], one["shown"]) for one in points], [(0, True), (1, True), (2, True)])

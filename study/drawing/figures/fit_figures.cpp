@@ -105,7 +105,8 @@ std::string law_name(const std::string& model) {
       {"inverse_log", "inverse logarithm"},
       {"inverse_log_height", "inverse logarithm, eq. 4"},
       {"two_exponentials", "two exponentials"},
-      {"kww", "stretched exponential"}};
+      {"kww", "stretched exponential"},
+      {"own", "own law"}};
   const auto found = names.find(model);
   return found == names.end() ? words(model) : found->second;
 }

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,15 +17,34 @@ struct PointTable {
   const TableView* table;
 };
 
-std::vector<PointTable> tables_of_points(const DrawnFile& file,
-                                         const std::vector<TableView>& made) {
-  std::vector<PointTable> found;
+/// Tables of the points that were measured with the settings that most of them have.
+struct ComparableTables {
+  std::vector<PointTable> tables;
+  std::string left_out;  // a sentence on the other points, for captions
+};
+
+ComparableTables tables_of_points(const DrawnFile& file, const std::vector<TableView>& made) {
+  std::vector<std::vector<PointTable>> alike;
   for (const ShownPoint& point : file.shown_points()) {
     const auto own = std::ranges::find_if(
         made, [&](const TableView& table) { return table.point() == point.number; });
-    if (own != made.end()) found.push_back({point, &*own});
+    if (own == made.end()) continue;
+    auto same = std::ranges::find_if(alike, [&](const std::vector<PointTable>& tables) {
+      return measured_alike(*tables.front().table, *own);
+    });
+    if (same == alike.end()) same = alike.insert(same, std::vector<PointTable>{});
+    same->push_back({point, &*own});
   }
-  return spread(found, most_shown);
+  if (alike.empty()) return {};
+  const auto most = std::ranges::max_element(alike, {}, &std::vector<PointTable>::size);
+  std::vector<std::string> others;
+  for (const std::vector<PointTable>& tables : alike)
+    if (&tables != &*most)
+      for (const PointTable& table : tables) others.push_back(table.point.label);
+  return {spread(*most, most_shown),
+          others.empty() ? ""
+                         : fmt::format(" Measured with other settings, and left out: {}.",
+                                       fmt::join(others, ", "))};
 }
 
 /// The last tap that all have.
@@ -45,8 +65,9 @@ std::size_t place_of(const TableView& table, double tap) {
   return static_cast<std::size_t>(std::ranges::find(taps, tap) - taps.begin());
 }
 
-void add_curves(const DrawnFile& file, const std::vector<PointTable>& tables, const PartPlot& plot,
+void add_curves(const DrawnFile& file, const ComparableTables& comparable, const PartPlot& plot,
                 double tap, Figures& figures) {
+  const auto& [tables, left_out] = comparable;
   const TableView& first = *tables.front().table;
   if (!first.has(plot.y) || !first.has_axis(plot.x)) return;
   FigurePanel panel = panel_of(first, plot);
@@ -54,7 +75,8 @@ void add_curves(const DrawnFile& file, const std::vector<PointTable>& tables, co
   panel.caption =
       sentence(first.long_name(plot.y)) +
       fmt::format("; one curve per sweep point after {} taps, {} with 68 % intervals.", tap,
-                  plot.pooled ? "over all realizations" : "means over realizations");
+                  plot.pooled ? "over all realizations" : "means over realizations") +
+      left_out;
   for (const auto& [point, table] : tables) {
     std::vector<FigureRow> rows = rows_at(*table, plot, plot.y, true, place_of(*table, tap));
     if (rows.empty()) continue;
@@ -75,8 +97,9 @@ bool has_value(const TableView& table, const char* name) {
 }
 
 /// The first number that is not 0 everywhere, against taps.
-void add_numbers(const DrawnFile& file, const std::vector<PointTable>& tables,
+void add_numbers(const DrawnFile& file, const ComparableTables& comparable,
                  const std::vector<NumberTrend>& trends, Figures& figures) {
+  const auto& [tables, left_out] = comparable;
   for (const NumberTrend& trend : trends) {
     const char* const name = trend.names.front();
     const TableView& first = *tables.front().table;
@@ -84,7 +107,8 @@ void add_numbers(const DrawnFile& file, const std::vector<PointTable>& tables,
     FigurePanel panel{
         .title = sentence(printed_name(name)) + " by tap, sweep points",
         .caption = sentence(first.long_name(name)) +
-                   "; one curve per sweep point, means over realizations with 68 % intervals.",
+                   "; one curve per sweep point, means over realizations with 68 % intervals." +
+                   left_out,
         .source = first.source(name),
         .x = {"taps t", AxisKind::taps},
         .y = {printed_name(name) + unit_text(first.units(name))}};
@@ -107,12 +131,12 @@ void add_numbers(const DrawnFile& file, const std::vector<PointTable>& tables,
 void add_structure_of_points(const DrawnFile& file, Figures& figures) {
   for (const DrawnPart& part : drawn_parts()) {
     const std::vector<TableView> made = file.made_of("structure", part.name);
-    const std::vector<PointTable> tables = tables_of_points(file, made);
-    if (tables.size() < 2) continue;
+    const ComparableTables comparable = tables_of_points(file, made);
+    if (comparable.tables.size() < 2) continue;
     const std::size_t n_before = figures.size();
-    const std::optional<double> tap = last_common_tap(tables);
-    if (tap && !part.plots.empty()) add_curves(file, tables, part.plots.front(), *tap, figures);
-    add_numbers(file, tables, part.trends, figures);
+    const std::optional<double> tap = last_common_tap(comparable.tables);
+    if (tap && !part.plots.empty()) add_curves(file, comparable, part.plots.front(), *tap, figures);
+    add_numbers(file, comparable, part.trends, figures);
     for (std::size_t i = n_before; i < figures.size(); ++i) figures[i].section = part.name;
   }
 }

@@ -154,4 +154,9 @@ std::string TableView::note(const std::string& key) const {
   return "";
 }
 
+bool measured_alike(const TableView& a, const TableView& b) {
+  if (a.note("settings").empty() || b.note("settings").empty()) return true;
+  return a.note("settings") == b.note("settings") && a.note("region") == b.note("region");
+}
+
 }  // namespace jostle::inline study

@@ -140,8 +140,8 @@ void add_steadiness(std::span<const Member> members, Table& table) {
     if (key == "maximum" || key == "minimum") note += "; " + condition;
 }
 
-/// What the points have of one kind, each with the places that have it: "1:60 at dilate = 0.02, 0.1;
-/// 1:10 at dilate = 0.3". Empty where all have the same.
+/// What the points have of one kind, each with the places that have it: "1:60 at dilate = 0.02,
+/// 0.1; 1:10 at dilate = 0.3". Empty where all have the same.
 std::string different(std::span<const Member> members, std::string Member::*kind) {
   std::vector<std::pair<std::string, std::vector<std::string>>> places;
   for (const Member& member : members) {

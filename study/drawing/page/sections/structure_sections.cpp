@@ -64,8 +64,10 @@ Json numbers_table(const TableView& table, const Part& part) {
   return estimates_block(part.title, head, rows);
 }
 
-/// Differences between sweep points, one line per quantity and pair.
-Json differences_table(const DrawnFile& file, const TableView& table, const Part& part) {
+/// Differences between sweep points, one line per quantity and pair. `made`: tables of the points,
+/// which may have been measured with other settings since.
+Json differences_table(const DrawnFile& file, const TableView& table, const Part& part,
+                       const std::vector<TableView>& made) {
   const std::vector<std::string> quantities = table.texts("quantity"), units = table.texts("units");
   const auto label = [&](const char* bound, std::size_t i) {
     return file.label(static_cast<std::uint32_t>(table.value(bound, i)));
@@ -85,8 +87,11 @@ Json differences_table(const DrawnFile& file, const TableView& table, const Part
          in_units(value_cell(table, "difference", i)), p_cell(table, "p", i),
          p_cell(table, "p_corrected", i)});
   }
+  const bool has_others =
+      std::ranges::any_of(made, [&](const TableView& own) { return !measured_alike(own, table); });
   const Json lines = estimates_block(
-      fmt::format("Differences between sweep points after {} taps, {}", table.note("tap"),
+      fmt::format("Differences between sweep points after {} taps{}, {}", table.note("tap"),
+                  has_others ? ", measured with " + table.note("settings") : "",
                   table.note("test")),
       {"quantity", "sweep points", "first", "second", "difference", "p", "p_corrected"}, rows);
   constexpr std::size_t most_unfolded = 12;
@@ -95,11 +100,12 @@ Json differences_table(const DrawnFile& file, const TableView& table, const Part
 }
 
 /// Sweep points beside each other.
-Blocks comparison_blocks(const PageContent& content, const Part& part) {
+Blocks comparison_blocks(const PageContent& content, const Part& part,
+                         const std::vector<TableView>& made) {
   Blocks blocks{figures_block(content, {.section = part.name, .subject = comparison_subject})};
   for (const TableView& table : tables_of(content.file, "structure", "comparison")) {
     if (table.path().back() != part.name || table.is_refused()) continue;
-    blocks.add(differences_table(content.file, table, part));
+    blocks.add(differences_table(content.file, table, part, made));
   }
   return blocks;
 }
@@ -109,7 +115,7 @@ Json part_section(const PageContent& content, const Part& part) {
                                made = not_refused(all);
   return page_section(
       part.name, part.title, "",
-      {subsection_block("Sweep points beside each other", comparison_blocks(content, part)),
+      {subsection_block("Sweep points beside each other", comparison_blocks(content, part, made)),
        points_block(content.file, numbers_of(made),
                     [&](std::uint32_t point) {
                       Blocks blocks{figures_block(content, {.section = part.name, .point = point})};

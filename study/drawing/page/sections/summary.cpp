@@ -119,19 +119,24 @@ std::string at_the_end(const DrawnFile& file) {
 
 /// The laws that held-out realizations do not reject.
 std::string law_answer(const FittedLaws& fitted) {
-  std::vector<std::string> kept;
+  std::vector<std::string> kept, uncompared;
   std::size_t n_rejected = 0;
   for (const TableView& law : fitted.laws) {
-    if (law.value("held_out_p") < LawComparison::level) {
+    const double p = law.value("held_out_p");
+    if (p < LawComparison::level)
       ++n_rejected;
-    } else {
-      kept.push_back(law_name(law));
-    }
+    else
+      (std::isnan(p) ? uncompared : kept).push_back(law_name(law));
   }
-  const std::string laws = linked(kept, " or ");
-  if (n_rejected > 0 && kept.size() == 1) return laws + " (all others rejected)";
-  if (n_rejected > 0) return fmt::format("{} ({} rejected)", laws, n_rejected);
-  return fitted.laws.size() == 1 ? laws + " (no other law fitted)" : laws + " (none rejected)";
+  if (fitted.laws.size() == 1)
+    return linked(uncompared.empty() ? kept : uncompared, "") + " (no other law fitted)";
+  if (kept.empty()) return linked(uncompared, " or ") + " (not compared)";
+  std::string rejected = "none rejected";
+  if (n_rejected > 0)
+    rejected = kept.size() == 1 ? "all others rejected" : fmt::format("{} rejected", n_rejected);
+  if (!uncompared.empty())
+    rejected += "; " + linked(uncompared, " and ") + " not compared with them";
+  return fmt::format("{} ({})", linked(kept, " or "), rejected);
 }
 
 std::string law_line(const DrawnFile& file) {
