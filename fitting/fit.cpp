@@ -220,6 +220,13 @@ bool Fitter::has_intervals(const Fit& fit) const {
   return fit.sigma_given || (fit.dof > 0 && fit.residual_sum > 0);
 }
 
+// Without scatter of a parameter both ends lie at its value, but for rounding.
+void include_within_rounding(double value, Interval& interval) {
+  const double rounding = 1e-12 * std::abs(value);
+  if (interval.lower > value && interval.lower - value <= rounding) interval.lower = value;
+  if (interval.upper < value && value - interval.upper <= rounding) interval.upper = value;
+}
+
 bool Fitter::find_intervals(const DependentErrors& errors, Fit& fit) {
   ProfileProblem problem{model_, searched_,       values_,
                          free_,  best_.cost,      fit.sigma_given ? 1 : fit.reduced_chi2,
@@ -253,6 +260,7 @@ bool Fitter::find_intervals(const DependentErrors& errors, Fit& fit) {
     estimate.intervals[0] = found.intervals[0];
     estimate.intervals[1] = found.intervals[1];
     if (fit.has_student_intervals) use_student_intervals(curve_, fit.error_dof, estimate);
+    for (Interval& interval : estimate.intervals) include_within_rounding(estimate.value, interval);
     mark_unfinished(options_.solver, estimate);
   }
   return true;
@@ -313,7 +321,8 @@ Fit Fitter::finish() {
     }
     if (fit.dof == 0) {
       fit.remarks.push_back(
-          "The law has as many parameters as there are points: errors cannot be estimated.");
+          std::string("The law has as many parameters as there are points: ") +
+          (fit.sigma_given ? "nothing tests it." : "errors cannot be estimated."));
     }
     if (options_.profiles && fit.dof > 0 && fit.residual_sum == 0 && !fit.sigma_given) {
       fit.remarks.push_back(

@@ -204,7 +204,8 @@ void remark_on_chi2(Fit& fit) {
             "exact; by the scatter around the law they are "
          << fit.scatter_ratio << " times longer.";
   } else if (fit.n_realizations > 0) {
-    text << "each realization has a level of its own; errors and intervals include this.";
+    text << "the points of a realization deviate together, as those of a level of its own do; errors "
+            "and intervals include this.";
   } else {
     text << "the errors given are larger than the scatter of the points.";
   }

@@ -86,6 +86,41 @@ struct Coverage {
 
 }  // namespace
 
+TEST_CASE("As many points as parameters give errors where the errors of points are given") {
+  Curve curve{.t = {3, 10, 30, 100}, .x = {}, .sigma = std::vector<double>(4, 2e-3)};
+  for (const double t : curve.t)
+    curve.x.push_back(StretchedExponential().value(t, ParameterValues{0.64, 0.56, 30, 0.6}.data()));
+  const auto remarked = [](const Fit& fit, const char* text) {
+    return std::ranges::any_of(fit.remarks, [&](const std::string& remark) {
+      return remark.find(text) != std::string::npos;
+    });
+  };
+  const Fit known = std::get<Fit>(fit(StretchedExponential(), curve));
+  CHECK(known.dof == 0);
+  CHECK(std::isfinite(known.estimates[0].intervals[0].lower));  // of rho_inf
+  CHECK(remarked(known, "as many parameters as there are points: nothing tests it"));
+  CHECK_FALSE(remarked(known, "errors cannot be estimated"));
+  curve.sigma.clear();
+  CHECK(remarked(std::get<Fit>(fit(StretchedExponential(), curve)), "errors cannot be estimated"));
+}
+
+TEST_CASE("Intervals of realizations that differ by their level alone contain the estimates") {
+  Curve curve{.t = geometric(1, 1000, 7), .x = {}, .sigma = {}, .n_realizations = 2};
+  for (const double t : curve.t) {
+    const double x = StretchedExponential().value(t, ParameterValues{0.64, 0.56, 40, 0.6}.data());
+    curve.values.insert(curve.values.end(), {x, x + 0.01});
+    curve.x.push_back(x + 0.005);
+  }
+  const Fit found = std::get<Fit>(fit(StretchedExponential(), curve));
+  for (const Estimate& estimate : found.estimates) {
+    for (const Interval& interval : estimate.intervals) {
+      CAPTURE(estimate.parameter.name, estimate.value);
+      CHECK(interval.lower <= estimate.value);
+      CHECK(interval.upper >= estimate.value);
+    }
+  }
+}
+
 TEST_CASE("Given errors: intervals and verdicts do not depend on the units") {
   // Noise of 0.5 to 2 errors: chi2 on both sides of 1, and far above it.
   for (const double noise : {0.05, 0.1, 0.14, 0.2}) {
