@@ -195,6 +195,7 @@ struct PoresSettings {
   double merge = 1e-6;                     // diameters
   double tolerance = 0.02;                 // tolerance of tetrahedral and octahedral sites, in xi
   double tail_from = 0.15;                 // v at which the exponential tail begins
+  bool spheres_inside = false;             // true if pores count by their spheres' centres
   bool operator==(const PoresSettings&) const = default;
 
   static constexpr Description description{
@@ -209,7 +210,10 @@ struct PoresSettings {
         field("tolerance", &Self::tolerance, Number{closed_range(0, 0.1)},
               "Tolerance of tetrahedral and octahedral sites, in xi"),
         field("tail_from", &Self::tail_from, Number{closed_range(0, 100)},
-              "v at which the tail begins")};
+              "v at which the tail begins"),
+        field("spheres_inside", &Self::spheres_inside, Flag{},
+              "Count a pore where the centres of all spheres that it touches lie in the region, as "
+              "[PB] do; else where its own does")};
   }
 };
 

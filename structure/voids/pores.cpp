@@ -193,6 +193,18 @@ std::vector<Pore> pores_in(const std::vector<Pore>& all, const Container& contai
   return inside;
 }
 
+std::vector<Pore> pores_of_spheres_in(const std::vector<Pore>& all, const Packing& packing,
+                                      const Region& region) {
+  const auto is_inside = [&](std::uint32_t sphere) {
+    return region.contains(packing.container, packing.centres[sphere]);
+  };
+  std::vector<Pore> inside;
+  std::ranges::copy_if(all, std::back_inserter(inside), [&](const Pore& pore) {
+    return std::ranges::all_of(pore.owners, is_inside);
+  });
+  return inside;
+}
+
 Site site_of(const Pore& pore, double tolerance) {
   const double tetrahedral = std::sqrt(1.5) - 1, octahedral = std::numbers::sqrt2 - 1;
   if (std::abs(xi_of(pore) - tetrahedral) <= tolerance) return Site::tetrahedral;

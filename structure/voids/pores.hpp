@@ -31,6 +31,11 @@ std::vector<Pore> pores(const Packing& packing, const VoronoiCells& cells, doubl
 std::vector<Pore> pores_in(const std::vector<Pore>& all, const Container& container,
                            const Region& region);
 
+/// Those that touch no sphere whose centre lies outside of the region: as Philippe & Bideau 2001
+/// count them, by their numbers of pores.
+std::vector<Pore> pores_of_spheres_in(const std::vector<Pore>& all, const Packing& packing,
+                                      const Region& region);
+
 /// Sites of close packing. A radius within `tolerance` of xi = sqrt(3/2) - 1 (tetrahedral) or
 /// sqrt(2) - 1 (octahedral).
 enum class Site { irregular, tetrahedral, octahedral };

@@ -5,6 +5,7 @@ import unittest
 
 import h5py
 import numpy as np
+from scipy import spatial
 
 from support import TINY, Case, changed
 
@@ -231,6 +232,33 @@ class Recomputed(Case):
             np.testing.assert_allclose(table[name], value, rtol=1e-7)
             np.testing.assert_allclose(table[name + "_error"], jackknife(np.array([w[k] for w in without])), rtol=1e-5)
         np.testing.assert_allclose(table["tail_p"], p_of_counts(counts, expected, 2), rtol=1e-7)
+
+    def test_pores_count_by_their_own_centres_or_those_of_their_spheres(self):
+        scene = changed(TINY, container={"sides": "walls", "width": 6}, spheres=250, realizations=1,
+                        protocol=[{"tap": {"dilate": 0.05}, "count": 1}], snapshots={"taps": [1]},
+                        structure={"region": {"heights": [1, 5], "from_sides": 1}, "pores": {}})
+        del scene["sweep"]
+        self.write(scene)
+        self.run_scene()
+        with h5py.File(self.folder / "tiny.h5") as file:
+            centres = file["particles/point_0000_realization_00000/position/value"][0]
+        four = spatial.Delaunay(centres).simplices
+        side = np.linalg.solve(2 * (centres[four[:, 1:]] - centres[four[:, :1]]),
+                               ((centres[four[:, 1:]]**2).sum(axis=2) - (centres[four[:, :1]]**2).sum(axis=2))[..., None])
+        middles = side[..., 0]
+        xi = (np.linalg.norm(middles - centres[four[:, 0]], axis=1) - 0.5) / 0.5
+        low, high = np.array([1, 1, 1]), np.array([5, 5, 5])
+
+        def inside(r):
+            return np.all((r >= low) & (r <= high), axis=-1)
+
+        for settings, counted in (({}, inside(middles)), ({"spheres_inside": True}, inside(centres)[four].all(axis=1))):
+            table = json.loads(self.jostle("structure", "tiny.h5", "--no-store", "--json", "--settings", json.dumps(
+                {"region": scene["structure"]["region"], "pores": settings})).stdout)["tables"][0]
+            found = {name: quantity["values"][0] for name, quantity in table["quantities"].items()}
+            self.assertGreater(counted.sum(), 100)
+            self.assertEqual(found["n_pores"], counted.sum())
+            np.testing.assert_allclose(found["nu"], (xi[counted]**3).mean(), **EXACT)
 
     def fitted(self, model, t, x, sigma):
         rows = "".join(f"{a!r},{b!r},{c!r}\n" for a, b, c in zip(t.tolist(), x.tolist(), sigma.tolist()))

@@ -65,7 +65,7 @@ TEST_CASE("Every key of a scene is read") {
   CHECK(structure.pair_correlation == PairsSettings{3, 0.05});
   CHECK(structure.order == OrderSettings{0.5});
   CHECK(structure.voronoi == VoronoiSettings{0.01, 0.05, true});
-  CHECK(structure.pores == PoresSettings{0.01, 2, 1e-5, 0.01, 0.2});
+  CHECK(structure.pores == PoresSettings{0.01, 2, 1e-5, 0.01, 0.2, true});
   CHECK(structure.void_probability == VoidSettings{1.5, 0.1, 5000});
   CHECK(structure.holes == HolesSettings{{1.25, 1.35, 0.1}});
   REQUIRE(scene.observables.size() == 9);
