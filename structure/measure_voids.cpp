@@ -204,10 +204,9 @@ Measurement measure_part(MeasuredPacking& measured, const VoronoiSettings& setti
 
 Measurement measure_part(MeasuredPacking& measured, const PoresSettings& settings) {
   const std::vector<Pore> all = pores(measured.packing, measured.voronoi(), settings.merge);
-  const std::vector<Pore> found =
-      settings.spheres_inside
-          ? pores_of_spheres_in(all, measured.packing, measured.region)
-          : pores_in(all, measured.packing.container, measured.region);
+  const std::vector<Pore> found = settings.spheres_inside
+                                      ? pores_of_spheres_in(all, measured.packing, measured.region)
+                                      : pores_in(all, measured.packing.container, measured.region);
   if (found.empty()) throw std::invalid_argument("no pore lies in the region");
   const PoreDistribution sizes = pore_distribution(found, settings.bin_width, settings.largest);
   double tetrahedral = 0, octahedral = 0, touched = 0;

@@ -88,6 +88,7 @@ int write_new_scene(const NewArguments& arguments) {
   const ParsedScene parsed = parse_scene(text);
   if (!parsed.scene)
     throw BadInput(fmt::format("{}: {}", arguments.name, fault_lines(parsed.faults)));
+  require_folder(path.string());
   output_path(path.string());  // refuses links of others
   require_no_stream(path);
   if (fs::exists(path) && !arguments.force) {

@@ -24,6 +24,8 @@ bool is_descriptor(const fs::path& path) {
   return fs::weakly_canonical(named.parent_path(), ignored).string().starts_with("/proc/");
 }
 
+}  // namespace
+
 void require_folder(const std::string& output) {
   require_name_fits(output);
   std::error_code ignored;
@@ -31,8 +33,6 @@ void require_folder(const std::string& output) {
   if (folder.empty() || fs::is_directory(folder, ignored)) return;
   throw ResultsError(output, fmt::format("there is no folder {}", folder.string()));
 }
-
-}  // namespace
 
 bool is_stream(const std::string& path) {
   std::error_code ignored;

@@ -15,6 +15,9 @@ bool is_stream(const std::string& path);
 /// `example` is a file's name to choose instead.
 void require_replaceable(const std::string& output, const std::string& example);
 
+/// Throws ResultsError where the folder of the file is missing, or its name is too long.
+void require_folder(const std::string& output);
+
 /// Refuses a link at a name that the command made up itself: nobody asked for what it leads to.
 void require_no_link(const std::string& output);
 

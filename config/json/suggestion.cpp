@@ -30,14 +30,23 @@ namespace {
 
 constexpr std::size_t shortest_part = 4;
 
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
 }  // namespace
 
 std::string did_you_mean(std::string_view written, const std::vector<std::string>& candidates) {
+  const std::string word = lower_case(written);
   const std::string* nearest = nullptr;
-  std::size_t least = 2 + written.size() / 4;
+  std::size_t least = 2 + word.size() / 4;
   for (const std::string& candidate : candidates) {
-    const bool part = written.size() >= shortest_part && candidate.find(written) != candidate.npos;
-    const std::size_t distance = part ? 1 : edit_distance(written, candidate);
+    const std::string known = lower_case(candidate);
+    const bool part = word.size() >= shortest_part && known.find(word) != known.npos;
+    const std::size_t distance = part ? 1 : edit_distance(word, known);
     if (distance < least) {
       least = distance;
       nearest = &candidate;

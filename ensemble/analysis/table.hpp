@@ -29,7 +29,7 @@ struct Table {
   std::vector<std::pair<std::string, std::string>> notes{};
 };
 
-/// Whether the table holds results, and not the reason why there are none, its note "refused".
+/// True if the table holds results, and not the reason why there are none, its note "refused".
 inline bool is_made(const Table& table) {
   return std::ranges::none_of(table.notes,
                               [](const auto& note) { return note.first == "refused"; });

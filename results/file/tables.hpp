@@ -20,7 +20,7 @@ struct TableGroup {
   std::vector<Table> tables;
 };
 
-/// What becomes of a table with results when one of its name without any is to be stored.
+/// Fate of a table with results when one of its name without any is to be stored.
 enum class StoredResults { replaced, left };
 
 /// Puts the tables into `group` of the results file: /<group>/<table name>/<axis or quantity>,

@@ -153,7 +153,7 @@ void add_terms(Table& table) {
       "Bideau 2001, fitted to the profile with its free surface");
 }
 
-/// What a part was measured with.
+/// Notes of the settings and the region that a part was measured with.
 void add_settings(std::string_view part, const StructureSettings& settings, Table& table) {
   table.notes.emplace_back("settings", resolved(settings).at(std::string(part)).dump());
   table.notes.emplace_back("region", region_note(part, settings));

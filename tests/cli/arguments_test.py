@@ -242,6 +242,7 @@ class Words(Refused):
                 self.refused(*arguments, name, answer=f'"{name}" is no file\'s name')
             self.refused(*arguments, "nowhere/x", code=BROKEN,
                          answer="jostle: nowhere/x: there is no folder nowhere\n")
+        self.refused("new", "nowhere/x", code=BROKEN, answer="jostle: nowhere/x.json: there is no folder nowhere\n")
         self.assertEqual(self.files(), ["scene.json", "tiny.h5"])
 
     def test_bytes_that_are_no_text_are_not_printed_as_they_are(self):

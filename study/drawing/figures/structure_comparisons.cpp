@@ -24,27 +24,27 @@ struct ComparableTables {
 };
 
 ComparableTables tables_of_points(const DrawnFile& file, const std::vector<TableView>& made) {
-  std::vector<std::vector<PointTable>> alike;
+  std::vector<std::vector<PointTable>> groups;
   for (const ShownPoint& point : file.shown_points()) {
     const auto own = std::ranges::find_if(
         made, [&](const TableView& table) { return table.point() == point.number; });
     if (own == made.end()) continue;
-    auto same = std::ranges::find_if(alike, [&](const std::vector<PointTable>& tables) {
+    auto group = std::ranges::find_if(groups, [&](const std::vector<PointTable>& tables) {
       return measured_alike(*tables.front().table, *own);
     });
-    if (same == alike.end()) same = alike.insert(same, std::vector<PointTable>{});
-    same->push_back({point, &*own});
+    if (group == groups.end()) group = groups.insert(group, std::vector<PointTable>{});
+    group->push_back({point, &*own});
   }
-  if (alike.empty()) return {};
-  const auto most = std::ranges::max_element(alike, {}, &std::vector<PointTable>::size);
-  std::vector<std::string> others;
-  for (const std::vector<PointTable>& tables : alike)
+  if (groups.empty()) return {};
+  const auto most = std::ranges::max_element(groups, {}, &std::vector<PointTable>::size);
+  std::vector<std::string> labels;
+  for (const std::vector<PointTable>& tables : groups)
     if (&tables != &*most)
-      for (const PointTable& table : tables) others.push_back(table.point.label);
+      for (const PointTable& table : tables) labels.push_back(table.point.label);
   return {spread(*most, most_shown),
-          others.empty() ? ""
+          labels.empty() ? ""
                          : fmt::format(" Measured with other settings, and left out: {}.",
-                                       fmt::join(others, ", "))};
+                                       fmt::join(labels, ", "))};
 }
 
 /// The last tap that all have.

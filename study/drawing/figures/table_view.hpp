@@ -60,7 +60,7 @@ class TableView {
   std::vector<std::string> path_;
 };
 
-/// Whether two tables of structure have the same settings and region. A table that does not name
+/// True if two tables of structure have the same settings and region. A table that does not name
 /// its settings may have those of any other.
 bool measured_alike(const TableView& a, const TableView& b);
 

@@ -41,7 +41,7 @@ struct Member {
   std::string no_value;            // why it has none, where that is known
   std::string copies;              // text of ObservableSeries::copies()
   bool error_is_no_basis = false;  // a fit's, of too few realizations
-  std::string law, range;          // of a fit: DerivedValue
+  std::string law, range;          // a fit's, as in DerivedValue
 };
 
 /// The mean of the last taps that the points have in common, of each realization.
@@ -140,7 +140,7 @@ void add_steadiness(std::span<const Member> members, Table& table) {
     if (key == "maximum" || key == "minimum") note += "; " + condition;
 }
 
-/// What the points have of one kind, each with the places that have it: "1:60 at dilate = 0.02,
+/// Different texts of the points, each with the places that have it: "1:60 at dilate = 0.02,
 /// 0.1; 1:10 at dilate = 0.3". Empty where all have the same.
 std::string different(std::span<const Member> members, std::string Member::*kind) {
   std::vector<std::pair<std::string, std::vector<std::string>>> places;
@@ -153,9 +153,9 @@ std::string different(std::span<const Member> members, std::string Member::*kind
   }
   if (places.size() < 2) return "";
   std::vector<std::string> texts;
-  for (const auto& [text, at] : places)
+  for (const auto& [text, xs] : places)
     texts.push_back(
-        fmt::format("{} at {} = {}", text, members.front().place.swept.name, joined(at, ", ")));
+        fmt::format("{} at {} = {}", text, members.front().place.swept.name, joined(xs, ", ")));
   return joined(texts, "; ");
 }
 

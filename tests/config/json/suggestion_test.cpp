@@ -18,6 +18,7 @@ TEST_CASE("The nearest candidate is suggested, and none that is far") {
   const std::vector<std::string> taps{"dilate", "dilate_floor_held", "lift", "shake"};
   CHECK(did_you_mean("dilat", taps) == " Did you mean \"dilate\"?");
   CHECK(did_you_mean("floor_held", taps) == " Did you mean \"dilate_floor_held\"?");
+  CHECK(did_you_mean("DILATE", taps) == " Did you mean \"dilate\"?");
   CHECK(did_you_mean("shkae", taps) == " Did you mean \"shake\"?");
   CHECK(did_you_mean("vibration", taps).empty());
   CHECK(did_you_mean("", taps).empty());

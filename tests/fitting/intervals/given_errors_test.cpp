@@ -86,7 +86,7 @@ struct Coverage {
 
 }  // namespace
 
-TEST_CASE("As many points as parameters give errors where the errors of points are given") {
+TEST_CASE("Known errors of as many points as parameters give the errors of a fit") {
   Curve curve{.t = {3, 10, 30, 100}, .x = {}, .sigma = std::vector<double>(4, 2e-3)};
   for (const double t : curve.t)
     curve.x.push_back(StretchedExponential().value(t, ParameterValues{0.64, 0.56, 30, 0.6}.data()));
@@ -97,7 +97,7 @@ TEST_CASE("As many points as parameters give errors where the errors of points a
   };
   const Fit known = std::get<Fit>(fit(StretchedExponential(), curve));
   CHECK(known.dof == 0);
-  CHECK(std::isfinite(known.estimates[0].intervals[0].lower));  // of rho_inf
+  CHECK(std::isfinite(known.estimates[0].intervals[0].lower));  // rho_inf
   CHECK(remarked(known, "as many parameters as there are points: nothing tests it"));
   CHECK_FALSE(remarked(known, "errors cannot be estimated"));
   curve.sigma.clear();
