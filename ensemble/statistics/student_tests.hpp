@@ -27,9 +27,9 @@ double error_or_nan(const ErrorOf& error);
 /// where one has none.
 ErrorOf combined(const ErrorOf& a, const ErrorOf& b);
 
-/// Probability that chance makes an estimate of 0 as large as this, on either side. 1 for a value of
-/// 0. NaN without an error, and where it is 0: realizations that do not differ tell nothing of what
-/// chance would make.
+/// Probability that chance makes an estimate of 0 as large as this, on either side. 1 for a value
+/// of 0. NaN without an error, and where it is 0: realizations that do not differ are no measure of
+/// chance.
 double p_value(double value, const ErrorOf& error);
 
 /// "p = 0.019 at the 5 % level": how every verdict names its test.

@@ -56,8 +56,8 @@ struct ChangeTest {
   const char* name;
   bool is_within;  // series, not over realizations
 
-  /// NaN without a test: realizations that all change by the same tell nothing of what chance would
-  /// make. A series that its line meets at every tap leaves nothing to chance.
+  /// NaN without a test: realizations that all change by the same are no measure of chance. A
+  /// series that its line meets at every tap leaves nothing to chance.
   double p() const {
     const bool is_exact = is_within && error.known() && error.error == 0 && change.value != 0;
     return is_exact ? 0 : p_value(change.value, error);

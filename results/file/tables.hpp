@@ -25,11 +25,11 @@ enum class StoredResults { replaced, left };
 
 /// Puts the tables into `group` of the results file: /<group>/<table name>/<axis or quantity>,
 /// axes as dimension scales, notes as attributes of the table. A table of the same name is
-/// replaced, except as `stored` says; others stay. Returns the names of those that were left. Every
-/// table records its origin: attributes version, git_revision, command_line, made. The file is
-/// never written in place: a changed copy is published over it. Throws ResultsError; LockHeld where
-/// another process holds the file's lock for longer than `patience` lasts; std::invalid_argument
-/// for a quantity whose number of values its axes do not give.
+/// replaced, unless `stored` leaves it; others stay. Returns the names of those that were left.
+/// Every table records its origin: attributes version, git_revision, command_line, made. The file
+/// is never written in place: a changed copy is published over it. Throws ResultsError; LockHeld
+/// where another process holds the file's lock for longer than `patience` lasts;
+/// std::invalid_argument for a quantity whose number of values its axes do not give.
 std::vector<std::string> store_tables(const std::string& path, const std::string& group,
                                       std::span<const Table> tables, const Provenance& provenance,
                                       const Patience& patience = {},
