@@ -151,10 +151,8 @@ void refuse_options_of_results(const FitArguments& arguments) {
         "be of",
         arguments.input));
   }
-  if (arguments.not_stored || arguments.live == Live::yes) {
-    throw BadInput(
-        fmt::format("{}: not a results file: --no-store and --live mean nothing", arguments.input));
-  }
+  if (arguments.live == Live::yes)
+    throw BadInput(fmt::format("{}: not a results file: --live means nothing", arguments.input));
   if (arguments.gaps_asked_for && !arguments.realizations) {
     throw BadInput("--gaps applies only to columns of realizations: add --realizations");
   }

@@ -91,10 +91,9 @@ int measure_structure(const StructureArguments& arguments) {
           fmt::format("{}: neither a results file nor extended XYZ (.xyz, .extxyz)", input));
     }
   }
-  if (!results && (arguments.output.not_stored || arguments.output.live == Live::yes)) {
-    throw BadInput(fmt::format("{}: not a results file: --no-store and --live mean nothing",
-                               arguments.inputs.front()));
-  }
+  if (!results && arguments.output.live == Live::yes)
+    throw BadInput(
+        fmt::format("{}: not a results file: --live means nothing", arguments.inputs.front()));
   require_different(arguments.inputs);
   std::vector<Table> tables;
   if (results) {

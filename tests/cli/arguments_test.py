@@ -222,9 +222,8 @@ class Words(Refused):
         for option in (["--resamples", 10], ["--seed", 3], ["--resample", "jackknife", "--seed", 3]):
             self.refused("fit", "curve.csv", *option, answer="apply only to --resample bootstrap")
         self.write("", "packing.xyz")
-        for option in ("--live", "--no-store"):
-            for command, file in (("fit", "curve.csv"), ("structure", "packing.xyz")):
-                self.refused(command, file, option, answer=f"{file}: not a results file: --no-store and --live")
+        for command, file in (("fit", "curve.csv"), ("structure", "packing.xyz")):
+            self.refused(command, file, "--live", answer=f"{file}: not a results file: --live means nothing")
         self.jostle("fit", "curve.csv", "--model", "kww", "--resample", "none")
         self.refused("fit", "curve.csv", "--fix", "tau=1", "--fix", "tau=2",
                      answer="tau is fixed already")
