@@ -41,6 +41,13 @@ struct KeptEnsemble {
   std::uint32_t realizations = 0;
   std::function<std::vector<KeptPacking>(std::uint32_t realization)> read;  // one call at a time
   std::uint64_t seed = 0, sweep_point = 0;                                  // for random points
+  std::vector<std::string> files = {};  // [realization], if each has one of its own
+
+  /// For messages.
+  std::string name_of(std::uint32_t realization) const {
+    if (!files.empty()) return files[realization];
+    return fmt::format("{}, realization {}", name, realization);
+  }
 };
 
 /// Measures one packing after another, on many threads. Those of a realization are read together.
@@ -99,8 +106,7 @@ class Measurer {
           measure(wrapped_inside(kept->packing), settings_,
                   stream_key(ensemble_.seed, ensemble_.sweep_point, r, Purpose::void_points));
     } catch (const std::invalid_argument& error) {
-      throw BadInput(
-          fmt::format("{}, realization {}, tap {}: {}", ensemble_.name, r, tap, error.what()));
+      throw BadInput(fmt::format("{}, tap {}: {}", ensemble_.name_of(r), tap, error.what()));
     }
   }
 
@@ -343,7 +349,8 @@ std::vector<Table> structure_of(std::span<const std::string> files,
                         .taps = {},
                         .realizations = static_cast<std::uint32_t>(files.size()),
                         .read = {},
-                        .seed = 1};
+                        .seed = 1,
+                        .files = {files.begin(), files.end()}};
   for (std::uint64_t frame = 0; frame < most; ++frame) ensemble.taps.push_back(frame);
   ensemble.taps = chosen_taps(ensemble.name, ensemble.taps, frames);
   ensemble.read = [&packings](std::uint32_t r) {

@@ -252,6 +252,12 @@ class Structure(Case):
             with self.subTest(arguments=arguments):
                 self.assertIn(answer, self.structure(*arguments, expect=BAD_INPUT).stderr)
         self.assertIn("must be in diameters", self.structure("radii.xyz", expect=BROKEN).stderr)  # by the reader
+        for name, x in (("apart", 2.5), ("inside", 1.3)):
+            (self.folder / f"{name}.xyz").write_text(
+                '2\nLattice="4 0 0 0 4 0 0 0 4" Properties=species:S:1:pos:R:3:radius:R:1 pbc="T T F"\n'
+                f"A 1 1 0.5 0.5\nB {x} 1 0.5 0.6\n")
+        done = self.structure("apart.xyz", "inside.xyz", "--part", "pair_correlation", expect=BAD_INPUT)
+        self.assertTrue(done.stderr.startswith("jostle: inside.xyz, tap 0: spheres 0 and 1 are 0.3"), done.stderr)
         self.write(changed(TINY, name="bare", snapshots={"taps": [0], "keep": ["coordination"]}))
         self.run_scene()
         self.assertIn("no packings are kept",

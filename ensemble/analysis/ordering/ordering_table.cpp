@@ -127,7 +127,7 @@ void OrderingAnalysis::add_law(Table& table) const {
              "slope on t from tap 1 on");
   if (!fit) {
     table.notes.emplace_back(
-        "law", "none fitted: it needs five that ordered, at three different taps above 0");
+        "law", "none fitted: it needs five that ordered, at three different taps, none at tap 0");
     return;
   }
   table.notes.emplace_back(
