@@ -211,9 +211,10 @@ struct PoresSettings {
               "Tolerance of tetrahedral and octahedral sites, in xi"),
         field("tail_from", &Self::tail_from, Number{closed_range(0, 100)},
               "v at which the tail begins"),
-        field("spheres_inside", &Self::spheres_inside, Flag{},
-              "Count a pore where the centres of all spheres that it touches lie in the region, as "
-              "[PB] do; else where its own does")};
+        field(
+            "spheres_inside", &Self::spheres_inside, Flag{},
+            "Count a pore if the centres of all spheres that it touches lie in the region, as the "
+            "counts of [PB] require; by default its own centre decides")};
   }
 };
 

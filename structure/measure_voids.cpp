@@ -127,7 +127,7 @@ Measurement measure_part(MeasuredPacking& measured, const VoronoiSettings& setti
   if (inner.volumes.empty()) throw std::invalid_argument("no whole cell lies in the region");
   const std::vector<double> faces = shares(inner.face_counts);
   const double end_of_free = end_of_free_volumes(inner.free_volumes);
-  const auto n_free = static_cast<std::size_t>(std::ceil(end_of_free / settings.bin_width - 0.5));
+  const auto n_free = static_cast<std::size_t>(std::ceil(end_of_free / settings.bin_width - 1e-9));
   Measurement measurement;
   measurement.places = {
       {"faces", whole_numbers(faces.size()), "1", "faces of a cell, without the tiniest"},

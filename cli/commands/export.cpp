@@ -163,6 +163,7 @@ void add_export(Command& app, int& code) {
   ExportArguments& a = *arguments;
   command.add_option("file", a.input, "Results, or a packing in extended XYZ")
       .required()
+      .file_name()
       .offers_files({"h5", "xyz", "extxyz"});
   command
       .add_option("--format", a.format,

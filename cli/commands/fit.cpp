@@ -145,14 +145,10 @@ void refuse_options_of_results(const FitArguments& arguments) {
     throw BadInput(fmt::format("{}: not a results file, so without observables and sweep points",
                                arguments.input));
   }
-  if (arguments.resampling_asked_for && !arguments.realizations) {
-    throw BadInput(fmt::format(
-        "{}: not a results file, and without realizations (--realizations) that --resample could "
-        "be of",
-        arguments.input));
-  }
+  if (arguments.resampling_asked_for && !arguments.realizations)
+    throw BadInput(fmt::format("{}: --resample requires --realizations", arguments.input));
   if (arguments.live == Live::yes)
-    throw BadInput(fmt::format("{}: not a results file: --live means nothing", arguments.input));
+    throw BadInput(fmt::format("{}: --live applies only to results files", arguments.input));
   if (arguments.gaps_asked_for && !arguments.realizations) {
     throw BadInput("--gaps applies only to columns of realizations: add --realizations");
   }
@@ -325,6 +321,7 @@ void add_fit(Command& app, int& code) {
       .add_option("input", a.input,
                   "Results, or a text file with columns t, X and maybe sigma (or --realizations)")
       .required()
+      .file_name()
       .offers_files({"h5", "csv", "txt"});
   command.add_option("--observable", a.observable, "Observable of the results to fit");
   command.add_option("--sweep-point", a.point,

@@ -82,6 +82,7 @@ void add_report(Command& app, int& code) {
   ReportArguments& a = *arguments;
   command.add_option("file", a.inputs, "Results; several are shown one after another")
       .required()
+      .file_name()
       .offers_files({"h5"});
   Option output = command.add_option(
       "-o,--output", a.output,

@@ -93,7 +93,7 @@ int measure_structure(const StructureArguments& arguments) {
   }
   if (!results && arguments.output.live == Live::yes)
     throw BadInput(
-        fmt::format("{}: not a results file: --live means nothing", arguments.inputs.front()));
+        fmt::format("{}: --live applies only to results files", arguments.inputs.front()));
   require_different(arguments.inputs);
   std::vector<Table> tables;
   if (results) {
@@ -123,6 +123,7 @@ void add_structure(Command& app, int& code) {
       .add_option("input", a.inputs,
                   "Results, or packings in extended XYZ, one file per realization")
       .required()
+      .file_name()
       .offers_files({"h5", "xyz", "extxyz"});
   command
       .add_option("--part", a.parts,

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <memory>
 #include <vector>
@@ -23,11 +24,13 @@ namespace jostle::inline cli {
 bool keep_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
                  const Provenance& provenance, const Patience& patience) {
   try {
+    const bool any_made = std::ranges::any_of(tables, is_made);
     const std::vector<std::string> left =
-        store_tables(path, group, tables, provenance, patience, StoredResults::left);
+        store_tables(path, group, tables, provenance, patience,
+                     any_made ? StoredResults::replaced : StoredResults::left);
     for (const std::string& name : left)
       print_to_standard_error(
-          fmt::format("jostle: /{}/{} stays as an earlier command made it\n", group, name));
+          fmt::format("jostle: /{}/{} is kept: this request gave no result\n", group, name));
     return true;
   } catch (const ResultsError& error) {
     print_to_standard_error(fmt::format("jostle: the tables are not stored under /{}: {}\n", group,

@@ -12,8 +12,8 @@
 namespace jostle::inline cli {
 
 /// Stores the tables in `group` of a results file. Returns whether they are stored: otherwise
-/// standard error gives the reason. A table with results stays where the new one has none, and
-/// standard error names it. For tables that were printed.
+/// standard error gives the reason. If none of them has results, tables that do stay, and standard
+/// error names them. For tables that were printed.
 [[nodiscard]] bool keep_tables(const std::string& path, const std::string& group,
                                std::span<const Table> tables, const Provenance& provenance,
                                const Patience& patience);

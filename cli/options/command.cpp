@@ -138,8 +138,12 @@ Option& Option::one_of(const std::vector<std::string>& words) {
   return offers(words);
 }
 
+Option& Option::file_name() {
+  return check(file_name_fault, "");
+}
+
 Option& Option::file_to_write() {
-  check(file_name_fault, "");
+  file_name();
   return offers_files({});
 }
 

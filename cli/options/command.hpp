@@ -41,6 +41,7 @@ class Option {
   Option& positive_number();
   Option& one_of(const std::vector<std::string>& words);
   /// A file's name: neither empty nor "-", which stands for no stream here.
+  Option& file_name();
   Option& file_to_write();
   /// `fault` describes the fault of a text; nothing if it is valid. `type` is shown in the help.
   Option& check(std::function<std::string(const std::string& text)> fault, const std::string& type);

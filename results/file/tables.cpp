@@ -216,20 +216,24 @@ std::vector<std::string> store_tables(const std::string& named, std::span<const 
   TemporaryFile temporary(path);
   copy_intact(path, temporary);
   std::vector<std::string> left;
+  std::size_t n_written = 0;
   naming_file(temporary.name(), [&] {
     WritableHdf5File file(temporary.name(), WritableHdf5File::Begin::as_it_is);
     for (const TableGroup& group : groups) {
       const Hdf5Handle parent = group_at(file, group.name);
       for (const Table& table : group.tables) {
-        if (stored == StoredResults::left && !is_made(table) && has_results(parent, table.name))
+        if (stored == StoredResults::left && !is_made(table) && has_results(parent, table.name)) {
           left.push_back(table.name);
-        else
-          write_table(parent, table, provenance);
+          continue;
+        }
+        write_table(parent, table, provenance);
+        ++n_written;
       }
     }
     update_contents(file, names);
     file.close();
   });
+  if (n_written == 0 && !left.empty()) return left;
   seal(temporary.name());
   temporary.publish();
   return left;

@@ -218,12 +218,12 @@ class Words(Refused):
     def test_what_would_be_ignored_is_refused(self):
         self.write(CURVE, "curve.csv")
         for option in (["--resample", "bootstrap"], ["--resample", "jackknife"]):
-            self.refused("fit", "curve.csv", *option, answer="without realizations")
+            self.refused("fit", "curve.csv", *option, answer="--resample requires --realizations")
         for option in (["--resamples", 10], ["--seed", 3], ["--resample", "jackknife", "--seed", 3]):
             self.refused("fit", "curve.csv", *option, answer="apply only to --resample bootstrap")
         self.write("", "packing.xyz")
         for command, file in (("fit", "curve.csv"), ("structure", "packing.xyz")):
-            self.refused(command, file, "--live", answer=f"{file}: not a results file: --live means nothing")
+            self.refused(command, file, "--live", answer=f"{file}: --live applies only to results files")
         self.jostle("fit", "curve.csv", "--model", "kww", "--resample", "none")
         self.refused("fit", "curve.csv", "--fix", "tau=1", "--fix", "tau=2",
                      answer="tau is fixed already")

@@ -113,7 +113,7 @@ class Kept(Case):
         with h5py.File(self.folder / "tiny.h5") as file:
             before = file[f"fits/{kept}/value"][:]
         done = self.jostle(*asked, "--fix", "rho=3.6", expect=BAD_INPUT)
-        self.assertIn(f"jostle: /fits/{kept} stays as an earlier command made it", done.stderr)
+        self.assertIn(f"jostle: /fits/{kept} is kept: this request gave no result", done.stderr)
         with h5py.File(self.folder / "tiny.h5") as file:
             self.assertEqual(file[f"fits/{kept}/value"][:].tolist(), before.tolist())
             self.assertNotIn("note_refused", file[f"fits/{kept}"].attrs)
@@ -122,22 +122,26 @@ class Kept(Case):
         self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))
         self.run_scene()
 
-        def fit(point, law, taps="1:40"):
-            self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--law", law, "--start",
-                        "a=4,b=-0.1", "--sweep-point", point, "--range", taps)
+        def fit(point, law, taps="1:40", *fixed):
+            start = "b=-0.1" if fixed else "a=4,b=-0.1"
+            self.jostle("fit", "tiny.h5", "--observable", "mean_height", "--law", law, "--start", start,
+                        "--sweep-point", point, "--range", taps, *fixed)
 
         sweep = ("analyse", "tiny.h5", "sweep", "--observable", "mean_height", "--quantity", "own/b")
         fit("0", "a + b*log(t)")
         fit("1", "a + b*t")
         self.assertRegex(self.jostle(*sweep, expect=BAD_INPUT).stderr,
-                         r"different laws, a \+ b\*log\(t\) at .*; a \+ b\*t at .*: fit one law at every point")
+                         r"different laws, a\+b\*log\(t\) at .*; a\+b\*t at .*: fit one law at every point")
         fit("1", "a + b*log(t)", "10:40")
         notes = json.loads(self.jostle(*sweep, "--json").stdout)["tables"][0]["notes"]
-        self.assertRegex(notes["ranges"], "^different: 1:40 at .* = .*; 10:40 at ")
-        self.assertIn("the fits have different ranges of t", notes["maximum"])
+        self.assertRegex(notes["fits"], "^different: 1:40 at .* = .*; 10:40 at ")
+        self.assertIn("the fits differ in their range of t", notes["maximum"])
         fit("1", "a + b*log(t)")
         notes = json.loads(self.jostle(*sweep, "--json").stdout)["tables"][0]["notes"]
-        self.assertNotIn("ranges", notes)
+        self.assertNotIn("fits", notes)
+        fit("1", "a+b*log(t)", "1:40", "--fix", "a=4.2")
+        notes = json.loads(self.jostle(*sweep, "--json").stdout)["tables"][0]["notes"]
+        self.assertRegex(notes["fits"], "^different: 1:40 at .* = .*; 1:40, a = 4.2 at ")
 
     def test_a_file_that_cannot_be_changed_still_gives_its_fits(self):
         self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}]))

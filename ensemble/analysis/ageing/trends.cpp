@@ -28,7 +28,7 @@ AgeTrend trend(const LogCurves& curves, const Eigen::VectorXd& weights,
   if (!(found.factor.low_95 > 1 / largest_factor && found.factor.high_95 < largest_factor)) {
     found.factor = no_estimate();
   }
-  if (!(found.detectable < largest_factor)) found.detectable = not_a_number;
+  if (std::isnan(found.p) || !(found.detectable < largest_factor)) found.detectable = not_a_number;
   return found;
 }
 

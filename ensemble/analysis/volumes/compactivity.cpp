@@ -232,6 +232,10 @@ CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps
     for (const Jackknifed& test : {jackknifed(difference_of(step)), jackknifed(step.curvature)}) {
       p.push_back(p_value(test.value, test.error));
       if (!test.error.known()) continue;
+      if (std::isnan(p.back())) {
+        detectable.push_back(std::numeric_limits<double>::infinity());
+        continue;
+      }
       const double level = CompactivityVerdict::level / static_cast<double>(2 * overlapping);
       const double found = test.error.error * smallest_effect_found(level, test.error.dof);
       detectable.push_back(size > 0 ? found / size : std::numeric_limits<double>::infinity());
@@ -254,6 +258,11 @@ CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps
     verdict.statement = "cannot decide: no two neighbours' histograms overlap; take smaller steps";
   } else if (realizations < 2) {
     verdict.statement = "cannot decide with 1 realization: errors need two";
+  } else if (std::isnan(verdict.drift_p) && drift.error.known()) {
+    verdict.statement = finite_text(
+        "cannot decide: the states of all realizations drift by {:.2g} deviations of single taps "
+        "over theirs, and without scatter no test is possible ({})",
+        drift.value, tests);
   } else if (verdict.drift_p < CompactivityVerdict::level) {
     verdict.statement = finite_text(
         "cannot decide: the states together still drift, by {:.2g} deviations of single taps over "

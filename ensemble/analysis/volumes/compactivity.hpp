@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/numbers.hpp"
 #include "ensemble/statistics/log_estimate.hpp"
 #include "ensemble/statistics/student_tests.hpp"
 
@@ -94,7 +95,8 @@ struct CompactivityStep {
 
 /// Comparison of the two estimators and of Edwards' form.
 struct CompactivityVerdict {
-  double difference_p = 1, curvature_p = 1;  // smallest over the steps, corrected (Holm 1979)
+  /// Smallest over the steps, corrected (Holm 1979); NaN without a test.
+  double difference_p = not_a_number, curvature_p = not_a_number;
   double detectable = 0;  // largest over the steps: disagreement or curvature, over the largest
                           // step of 1/X, that would have been found with probability 0.8
   double separation = 0;  // separation at the widest step that overlaps

@@ -1,8 +1,11 @@
 #include "study/drawing/figures/table_view.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 
+#include "config/scene.hpp"
 #include "study/drawing/figures/figure.hpp"
 #include "study/tables/points/half_widths.hpp"
 
@@ -154,9 +157,22 @@ std::string TableView::note(const std::string& key) const {
   return "";
 }
 
+namespace {
+
+/// The settings of a part with the defaults of this version: an earlier one may have had fewer.
+std::string settings_with_defaults(const TableView& table) {
+  const std::string& part = table.path().back();
+  const std::string written = table.note("settings");
+  const ParsedStructure parsed = parse_structure(fmt::format(R"({{"{}": {}}})", part, written));
+  return parsed.settings ? resolved(*parsed.settings).at(part).dump() : written;
+}
+
+}  // namespace
+
 bool measured_alike(const TableView& a, const TableView& b) {
   if (a.note("settings").empty() || b.note("settings").empty()) return true;
-  return a.note("settings") == b.note("settings") && a.note("region") == b.note("region");
+  return a.note("region") == b.note("region") &&
+         settings_with_defaults(a) == settings_with_defaults(b);
 }
 
 }  // namespace jostle::inline study

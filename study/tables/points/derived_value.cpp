@@ -110,6 +110,23 @@ std::string note_of(const Table& table, const char* key) {
   return found == table.notes.end() ? "" : found->second;
 }
 
+std::string without_blanks(std::string text) {
+  std::erase(text, ' ');
+  return text;
+}
+
+std::string conditions_of(const Table& fit) {
+  std::string text = note_of(fit, "range");
+  for (const Quantity& axis : fit.axes) {
+    const auto* names = std::get_if<std::vector<std::string>>(&axis.values);
+    if (axis.name != "parameter" || !names) continue;
+    for (std::size_t j = 0; j < names->size(); ++j)
+      if (text_at(quantity_named(fit, "identifiability"), j) == name_of(Identifiability::fixed))
+        text += fmt::format(", {} = {}", (*names)[j], number_at(quantity_named(fit, "value"), j));
+  }
+  return text;
+}
+
 std::optional<DerivedValue> parameter(const Table& table, const std::string& name,
                                       const std::string& prefix) {
   const auto point = point_along(table, name, prefix);
@@ -119,8 +136,8 @@ std::optional<DerivedValue> parameter(const Table& table, const std::string& nam
                       .label = {name, point->units, parameter_of_a_fit, ""},
                       .no_value = point->no_value,
                       .error_is_no_basis = point->no_value.empty() && !point->error.known(),
-                      .law = prefix.empty() ? note_of(table, "law") : "",
-                      .range = note_of(table, "range")};
+                      .law = prefix.empty() ? without_blanks(note_of(table, "law")) : "",
+                      .conditions = conditions_of(table)};
 }
 
 void set_steadiness(const Table& table, DerivedValue& value) {

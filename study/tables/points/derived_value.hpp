@@ -41,9 +41,9 @@ struct DerivedValue {
   /// Steady states alone: the taps that they were taken from, and whether these are steady.
   std::string taps = {};
   std::optional<Verdict> steady = {};
-  /// Parameters of fits alone: the formula that was fitted, empty for a restated law's, and the
-  /// range of t.
-  std::string law = {}, range = {};
+  /// Parameters of fits alone: the formula that was fitted without blanks, empty for a restated
+  /// law's; the range of t, and what was fixed: "1:60, b = -0.02".
+  std::string law = {}, conditions = {};
 };
 
 /// "steady/sigma" of analyses, "kww/rho_inf" of fits. Throws BadInput where it is not among the

@@ -41,7 +41,7 @@ struct Member {
   std::string no_value;            // why it has none, where that is known
   std::string copies;              // text of ObservableSeries::copies()
   bool error_is_no_basis = false;  // a fit's, of too few realizations
-  std::string law, range;          // a fit's, as in DerivedValue
+  std::string law, conditions;     // a fit's, as in DerivedValue
 };
 
 /// The mean of the last taps that the points have in common, of each realization.
@@ -76,7 +76,7 @@ void set(Member& member, DerivedValue&& derived) {
   member.taps = std::move(derived.taps);
   member.steady = derived.steady;
   member.law = std::move(derived.law);
-  member.range = std::move(derived.range);
+  member.conditions = std::move(derived.conditions);
 }
 
 /// The point of the curve at this place of its axis, to the four digits that tables have of it,
@@ -146,7 +146,7 @@ std::string different(std::span<const Member> members, std::string Member::*kind
   std::vector<std::pair<std::string, std::vector<std::string>>> places;
   for (const Member& member : members) {
     const std::string& text = member.*kind;
-    if (text.empty()) continue;
+    if (text.empty() || !member.no_value.empty()) continue;
     auto found = std::ranges::find(places, text, [](const auto& place) { return place.first; });
     if (found == places.end()) found = places.insert(found, {text, {}});
     found->second.push_back(finite_text("{:.4g}", member.place.x));
@@ -159,14 +159,15 @@ std::string different(std::span<const Member> members, std::string Member::*kind
   return joined(texts, "; ");
 }
 
-/// Parameters of fits to different ranges of t are different numbers where the law is not the true
-/// one: the verdicts on a maximum and a minimum report it.
-void add_ranges(std::span<const Member> members, Table& table) {
-  const std::string ranges = different(members, &Member::range);
-  if (ranges.empty()) return;
-  table.notes.emplace_back("ranges", "different: " + ranges);
+/// Parameters of fits to different ranges of t, or beside other fixed parameters, are different
+/// numbers where the law is not the true one: the verdicts on a maximum and a minimum report it.
+void add_conditions(std::span<const Member> members, Table& table) {
+  const std::string conditions = different(members, &Member::conditions);
+  if (conditions.empty()) return;
+  table.notes.emplace_back("fits", "different: " + conditions);
   for (auto& [key, note] : table.notes)
-    if (key == "maximum" || key == "minimum") note += "; the fits have different ranges of t";
+    if (key == "maximum" || key == "minimum")
+      note += "; the fits differ in their range of t or in what is fixed";
 }
 
 /// The averaged taps, and points without a value.
@@ -224,7 +225,7 @@ Table curve_table(std::string name, std::span<const Member> members,
   const Member& first = valued == members.end() ? members.front() : *valued;
   Table table = sweep_table(std::move(name), first.place.swept, first.label, curve, point);
   add_notes(members, table);
-  add_ranges(members, table);
+  add_conditions(members, table);
   add_steadiness(members, table);
   PointNotes copies;
   for (const Member& member : members) {

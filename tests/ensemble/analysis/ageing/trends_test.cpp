@@ -34,6 +34,15 @@ TEST_CASE("A small p does not count where its error is beyond all factors") {
   CHECK(tested(10, 0.1).verdict.starts_with("A changes"));
 }
 
+TEST_CASE("A change without an error is neither found nor excluded") {
+  const AgeTrend found = tested(2, 0);
+  CHECK(std::isnan(found.p));
+  CHECK(std::isnan(found.detectable));
+  CHECK(found.verdict ==
+        "cannot decide with 3 realizations (change of A from the first waiting time to the last: "
+        "no test, its error is not known)");
+}
+
 TEST_CASE("Two tests that contradict each other decide nothing, and both are named") {
   const AgeTrend rejects = tested(2, 0.1), accepts = tested(0.05, 0.1);
   const AgeTrend found = agreed(rejects, accepts, 3, words);

@@ -245,6 +245,23 @@ TEST_CASE("States that do not vary or do not overlap are reported") {
             .statement.starts_with("cannot decide"));
 }
 
+TEST_CASE("Realizations that do not differ decide nothing on compactivities") {
+  CompactivityStep step{.start = 0, .end = 1};
+  step.separation = 1;
+  step.overlaps = true;
+  step.fluctuations = {1, {1, 1, 1}};
+  step.histograms = {3, {3, 3, 3}};
+  step.curvature = {2, {2, 2, 2}};
+  const CompactivityVerdict even = compactivity_verdict(std::span(&step, 1), {0.1, {0.05, 2}});
+  CHECK(std::isnan(even.difference_p));
+  CHECK(even.statement ==
+        "cannot decide: no test, for errors are not known, 3 realizations; no disagreement, "
+        "however large, would be found");
+  const CompactivityVerdict drifting = compactivity_verdict(std::span(&step, 1), {5, {0, 2}});
+  CHECK(
+      drifting.statement.starts_with("cannot decide: the states of all realizations drift by 5 "));
+}
+
 TEST_CASE("Close neighbours would agree whatever they are: no verdict") {
   const Setting setting{10, 1000, 0};
   std::vector<SteadyVolumes> states(2);
