@@ -11,9 +11,9 @@
 
 namespace jostle::inline cli {
 
-/// Stores the tables in `group` of a results file. Returns whether they are stored: otherwise
-/// standard error gives the reason. If none of them has results, tables that do stay, and standard
-/// error names them. For tables that were printed.
+/// Stores the tables of one request in `group` of a results file, in place of tables of the same
+/// names. If no table of the request has results, stored tables with results stay, and standard
+/// error names them. Returns false where nothing could be stored: standard error gives the reason.
 [[nodiscard]] bool keep_tables(const std::string& path, const std::string& group,
                                std::span<const Table> tables, const Provenance& provenance,
                                const Patience& patience);

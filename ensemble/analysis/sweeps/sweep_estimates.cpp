@@ -202,7 +202,8 @@ SweepExtremum highest(const SweepCurve& curve, std::size_t points, const Extremu
   const auto places = static_cast<double>(curve.n_points() - 2);
   const double p_before = p_of_slope(curve, first, top, 1);
   const double p_behind = p_of_slope(curve, top, first + points - 1, -1);
-  if (p_before == 1 || p_behind == 1)
+  const bool has_errors = curve.error_of(parabola.coefficients[1]).known();
+  if (has_errors && (p_before == 1 || p_behind == 1))
     found.p = 1;  // at an end of the window, whatever the other side
   else if (!std::isnan(p_before) && !std::isnan(p_behind))
     found.p = std::min(1.0, places * std::max(p_before, p_behind));

@@ -158,8 +158,12 @@ TEST_CASE("A curve without a maximum has none") {
   CHECK(flat.verdict.starts_with("cannot decide: no maximum is established, chance alone"));
   CHECK(maximum(SweepCurve({1, 2}, {1, 2}, known({1, 1}))).verdict ==
         "cannot decide: fewer than three different strengths have a value");
-  CHECK(maximum(SweepCurve(x, {1, 2, 3, 2, 1}, std::vector<ErrorOf>(5))).verdict ==
-        "cannot decide: there are no errors to test a maximum by");
+  // Inside the sweep or at its end, nothing is tested without errors.
+  for (const std::vector<double>& y : {std::vector<double>{1, 2, 3, 2, 1}, {5, 4, 3, 2, 1}}) {
+    const SweepExtremum untested = maximum(SweepCurve(x, y, std::vector<ErrorOf>(5)));
+    CHECK(std::isnan(untested.p));
+    CHECK(untested.verdict == "cannot decide: there are no errors to test a maximum by");
+  }
 }
 
 TEST_CASE("A minimum is the maximum of the reflected curve, in words of its own") {
