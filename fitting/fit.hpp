@@ -57,7 +57,7 @@ enum class Identifiability {
   not_examined,      // no intervals asked for, or no degree of freedom left
   unfinished,        // open, because the fit stopped at its limit of evaluations
   identified,        // closed
-  wide,              // closed, but over more than a factor 2, or than an eighth of the curve
+  wide,              // closed, but long by the rule of docs/reference/laws.md
   bounded_below,     // no upper limit
   bounded_above,     // no lower limit, or none but the parameter's own bound
   not_identifiable,  // no limit at all

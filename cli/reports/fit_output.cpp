@@ -21,8 +21,9 @@ constexpr const char* verdict_legend =
     "\na(b): b, in the last digits of a, is half the 68 % interval; a(+b/-c): its two sides; -: "
     "it is open, or the 95 % interval is on both sides (not identifiable).\n"
     "wide: the 95 % interval is longer than an eighth of the curve's range (a level or a place), "
-    "has ends that differ by more than a factor 2 (another positive parameter), or contains 0 (a "
-    "slope); identified: the interval has two ends and is not wide.\n";
+    "has ends that differ by more than a factor 2 (another positive parameter, or the factor of a "
+    "power of t), or contains 0 (a slope or a factor); identified: the interval has two ends and "
+    "is not wide.\n";
 
 /// The conventions of the tables, and placeholders of units that the file does not give.
 std::string legend(const CurveUnits& units) {

@@ -18,7 +18,7 @@ constexpr double few_points_share = 0.1;
 // chi2 is itself an estimate, hence the smaller level.
 constexpr double runs_level = 0.01;
 constexpr double chi2_level = 0.001;
-constexpr double wide_factor = 2;  // ratio of limits of a wide positive parameter
+constexpr double wide_factor = 2;  // ratio of limits of a wide positive parameter or factor
 constexpr double wide_share =
     0.125;  // share of the curve's range for a wide parameter, for a place or a level
 
@@ -36,6 +36,11 @@ bool is_wide(const Estimate& estimate, const Curve& curve) {
   const Interval& interval = estimate.intervals[1];
   const double width = interval.upper - interval.lower;
   const ParameterUnit unit = estimate.parameter.unit;
+  if (estimate.parameter.of_power) {
+    const auto [smaller, larger] =
+        std::minmax({std::abs(interval.lower), std::abs(interval.upper)});
+    return interval.lower * interval.upper <= 0 || larger > wide_factor * smaller;
+  }
   if (unit == ParameterUnit::value) return width > wide_share * span(curve.x);
   if (estimate.parameter.lower == 0) return interval.upper > wide_factor * interval.lower;
   if (unit == ParameterUnit::time) return width > wide_share * span(curve.t);
@@ -204,8 +209,8 @@ void remark_on_chi2(Fit& fit) {
             "exact; by the scatter around the law they are "
          << fit.scatter_ratio << " times longer.";
   } else if (fit.n_realizations > 0) {
-    text << "the points of a realization deviate together, as those of a level of its own do; errors "
-            "and intervals include this.";
+    text << "the points of a realization deviate together, as those of a level of its own do; "
+            "errors and intervals include this.";
   } else {
     text << "the errors given are larger than the scatter of the points.";
   }

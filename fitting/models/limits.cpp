@@ -78,6 +78,12 @@ Parameter level(const std::string& name, const char* meaning) {
   return {.name = name, .meaning = meaning, .unit = ParameterUnit::value, .linear = true};
 }
 
+Parameter factor(const char* name, const char* meaning) {
+  Parameter of_power = level(name, meaning);
+  of_power.of_power = true;
+  return of_power;
+}
+
 Parameter slope(const char* name, const char* meaning) {
   return {.name = name, .meaning = meaning, .unit = ParameterUnit::value_per_time, .linear = true};
 }
@@ -295,7 +301,7 @@ std::vector<Limit> StretchedExponential::limits() const {
            }},
           {std::make_shared<LimitLaw>(
                "power_of_t", "rho_0 + r t^beta",
-               std::vector<Parameter>{rho_0, level("r", "growth until t = 1"),
+               std::vector<Parameter>{rho_0, factor("r", "growth until t = 1"),
                                       bent("beta", "stretching exponent", ParameterUnit::none)},
                [](double t, double beta, double* terms, double* slopes) {
                  terms[0] = 1;
@@ -309,7 +315,7 @@ std::vector<Limit> StretchedExponential::limits() const {
            }},
           {std::make_shared<LimitLaw>(
                "power_approach", "rho_inf - A t^-s",
-               std::vector<Parameter>{rho_inf, level("A", "distance from rho_inf at t = 1"),
+               std::vector<Parameter>{rho_inf, factor("A", "distance from rho_inf at t = 1"),
                                       bent("s", "exponent of the approach", ParameterUnit::none)},
                [](double t, double s, double* terms, double* slopes) {
                  const double power = std::pow(t, -s);

@@ -20,7 +20,8 @@ struct Parameter {
   ParameterUnit unit = ParameterUnit::none;
   double lower = -std::numeric_limits<double>::infinity();  // exclusive
   double upper = std::numeric_limits<double>::infinity();   // exclusive
-  bool linear = false;  // the model is linear in it (plus what does not depend on it)
+  bool linear = false;    // the model is linear in it (plus what does not depend on it)
+  bool of_power = false;  // factor of a power of t: wide by the ratio of its limits
 };
 
 /// For two parameters: kept * other^power, by their indices.

@@ -107,10 +107,13 @@ std::vector<std::vector<double>> PoreTail::candidates(const Curve& curve) const 
 }
 
 PowerLaw::PowerLaw()
-    : PublishedLaw(
-          "power_law", "A t^-s", "Philippe & Bideau 2001, sec. on fluctuations",
-          {{.name = "A", .meaning = "value at t = 1", .unit = ParameterUnit::value, .lower = 0},
-           {.name = "s", .meaning = "minus the log-log slope"}}) {}
+    : PublishedLaw("power_law", "A t^-s", "Philippe & Bideau 2001, sec. on fluctuations",
+                   {{.name = "A",
+                     .meaning = "value at t = 1",
+                     .unit = ParameterUnit::value,
+                     .lower = 0,
+                     .of_power = true},
+                    {.name = "s", .meaning = "minus the log-log slope"}}) {}
 
 double PowerLaw::value(double t, const double* p) const {
   return p[0] * std::pow(t, -p[1]);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fitting/fit.hpp"
+#include "fitting/models/limit.hpp"
 #include "fitting/models/models.hpp"
 #include "fitting/numbers.hpp"
 #include "fitting/report.hpp"
@@ -144,6 +145,57 @@ TEST_CASE("the interval of 95 % holds that of 68 %, also where parameters diverg
       }
     }
   }
+}
+
+TEST_CASE("the factor of a power of t is measured by itself, not by the values of the curve") {
+  const std::vector<Limit> limits = make_model("kww")->limits();
+  const auto power = std::find_if(limits.begin(), limits.end(), [](const Limit& limit) {
+    return limit.law->name() == "power_of_t";
+  });
+  REQUIRE(power != limits.end());
+  Noise noise(31);
+  for (const double scatter : {1e-3, 1e-7}) {
+    CAPTURE(scatter);
+    Curve curve;
+    for (double t = 1e4; t < 1.1e6; t *= 1.2) {  // beta and r make up for each other
+      curve.t.push_back(t);
+      curve.x.push_back(0.6 + 1e-4 * std::pow(t, 0.4) + scatter * noise());
+    }
+    const Fit fitted = std::get<Fit>(fit(*power->law, curve));
+    const Estimate& r = fitted.estimates[1];
+    CAPTURE(r.statement);
+    const Interval& interval = r.intervals[1];
+    REQUIRE(interval.closed());
+    CHECK(interval.upper - interval.lower < 0.1 * (curve.x.back() - curve.x.front()));
+    const bool precise = interval.lower > 0 && interval.upper < 2 * interval.lower;
+    CHECK(precise == (scatter < 1e-5));
+    CHECK((r.identifiability == Identifiability::identified) == precise);
+  }
+}
+
+TEST_CASE("A of a power law is measured by itself where t = 1 is far from the curve") {
+  const auto fitted_A = [](double first, double scatter) {
+    Noise noise(32);
+    Curve curve;
+    for (double t = first; t < 1e3 * first; t *= 1.4) {
+      curve.t.push_back(t);
+      curve.x.push_back(std::pow(t / first, -1.5) * std::exp(scatter * noise()));
+    }
+    const Fit fitted = std::get<Fit>(fit(*make_model("power_law"), curve));
+    REQUIRE(fitted.estimates[0].intervals[1].closed());
+    return fitted.estimates[0];
+  };
+  const Estimate at_small_t = fitted_A(1e-4, 0.8);
+  CAPTURE(at_small_t.statement);
+  CHECK(at_small_t.intervals[1].upper > 2 * at_small_t.intervals[1].lower);
+  CHECK(at_small_t.intervals[1].upper - at_small_t.intervals[1].lower <
+        0.01);  // little of the range, 1
+  CHECK(at_small_t.identifiability == Identifiability::wide);
+  const Estimate at_large_t = fitted_A(1e4, 0.02);
+  CAPTURE(at_large_t.statement);
+  CHECK(at_large_t.intervals[1].upper < 2 * at_large_t.intervals[1].lower);
+  CHECK(at_large_t.intervals[1].upper - at_large_t.intervals[1].lower > 1);
+  CHECK(at_large_t.identifiability == Identifiability::identified);
 }
 
 TEST_CASE("a good curve is reported as identified, without remarks") {
