@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import unittest
+import unittest.mock
 import xml.etree.ElementTree
 
 import jostle
@@ -254,6 +255,26 @@ class Catalogue(Case):
         self.assertEqual(typeset("A(t, t_W) of Φ_b"), r"A(t, t$_{W}$) of Φ$_{b}$")
         for text in ("max_step = 0.1", "a_bc", "x__y", "_a"):
             self.assertEqual(typeset(text), text)
+
+    def letters_of(self, label):
+        """All letters of a figure as it is saved with this label of y."""
+        figure = copy.deepcopy(jostle.plot.figures(self.open(made(BED)))["mean-height"])
+        figure["panels"][0]["y"]["label"] = label
+        jostle.plot.save(jostle.plot.draw(figure), self.folder / "letters", kinds=["svg"])
+        root = xml.etree.ElementTree.parse(self.folder / "letters.svg").getroot()
+        return "".join("".join(text.itertext()) for text in root.iter("{http://www.w3.org/2000/svg}text"))
+
+    def test_letters_missing_from_the_first_font_are_drawn_beside_a_subscript(self):
+        with unittest.mock.patch("jostle.plot.drawing.FONTS", ("cmss10", "DejaVu Sans")):
+            letters = self.letters_of("mean \u27e8h_c\u27e9")
+        self.assertLess({"\u27e8", "\u27e9"}, set(letters))
+        self.assertNotIn("\u00a4", letters)  # the sign for a missing letter
+
+    def test_every_letter_may_stand_beside_a_subscript(self):
+        for text in ("h_c \U00020000", "x_\U00020000", "h_c \u4e2d", "h_c \\", "\\h_c", "\\\u27e8h_c\u27e9", "\\\\\u27e8h_c", "h_c $",
+                     "\\$h_c", "{h_c %^"):
+            with self.subTest(text=text):
+                self.assertEqual(self.letters_of(text).count("$"), text.count("$"))
 
     def test_files_are_the_same_on_every_day(self):
         figure = jostle.plot.figures(self.open(made(BED)))["mean-height"]

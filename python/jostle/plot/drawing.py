@@ -58,7 +58,20 @@ def style() -> Iterator[None]:
 def typeset(text: str) -> str:
     """A text as matplotlib shows it letter by letter, with the subscripts of symbols as "N_c"."""
     line = re.sub(r"\s", " ", text).replace("$", r"\$")
-    return re.sub(r"(?<![\w\\$])([^\W\d_])_(\w|\u221e)(?!\w)", r"\1$_{\2}$", line)
+    # Mathematics of matplotlib ends at U+1FFFF.
+    line = re.sub(r"(?<![\w\\$])([^\W\d_])_(\w|\u221e)(?<![\U00020000-\U0010ffff])(?!\w)", r"\1$_{\2}$", line)
+    pieces = re.split(r"(\$_\{.\}\$)", line)
+    if len(pieces) == 1:
+        return line
+    # Letters beside a subscript have the first font alone: the letters missing there become symbols of mathematics.
+    # A letter behind a backslash stays, because the backslash would change the dollar.
+    font = font_manager.get_font(font_manager.findfont(font_manager.FontProperties()))
+
+    def symbol(letter: re.Match[str]) -> str:
+        return letter[0] if font.get_char_index(ord(letter[0])) else f"${letter[0]}$"
+
+    pieces[::2] = [re.sub(r"(?<!\\)[\u0080-\U0001ffff]", symbol, piece) for piece in pieces[::2]]
+    return "".join(pieces)
 
 
 def _numbers(series: Description, name: str) -> np.ndarray:
@@ -182,7 +195,8 @@ def _linear(axis: Any, values: np.ndarray, most: int) -> None:
 def _names(ax: Axes, names: list[str]) -> None:
     ax.xaxis.set_major_locator(FixedLocator(range(len(names))))
     ax.xaxis.set_minor_locator(NullLocator())
-    ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: typeset(names[round(value)])))
+    shown = [typeset(name) for name in names]
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda value, _: shown[round(value)]))
     for label in ax.get_xticklabels():
         label.update({"rotation": 30, "ha": "right", "rotation_mode": "anchor"})
     ax.tick_params(axis="x", length=2)
