@@ -7,11 +7,15 @@ import html
 import json
 import os
 import re
+import sys
 import unittest
-import xml.etree.ElementTree
 
 import h5py
+from matplotlib.text import Text
 from support import SOURCE, UNFOLDED, Case
+
+sys.path.insert(0, str(SOURCE / "python"))
+from jostle.plot import draw  # noqa: E402
 
 # "nan", "-inf" and Python's "Infinity" as words; not X_inf, a beta of "infinity" or "--info".
 NOT_FINITE = re.compile(r"(?<![\w.])[-+]?(?:(?i:nan|inf)|Infinity)(?!\w)")
@@ -147,7 +151,7 @@ class Texts(Case):
 
     def setUp(self):
         super().setUp()
-        self.n_commands = self.n_texts = 0
+        self.n_commands = self.n_texts = self.n_figures = 0
         self.found = []
 
     def look_at(self, text, where, for_people=True):
@@ -198,6 +202,16 @@ class Texts(Case):
             self.look_at("\n".join(text for text in texts if text not in FOR_PROGRAMS_TO_READ),
                          (self.scene_name, "page"))
 
+    def look_at_figures(self):
+        """All texts of the figures as they are drawn, without files: figures_test.py has those."""
+        self.ask("report", "one.h5", "--catalogue", "figures.json", "--force")
+        catalogue = self.folder / "figures.json"
+        for figure in json.loads(catalogue.read_text())["figures"] if catalogue.exists() else []:
+            drawn = draw(figure)
+            drawn.draw_without_rendering()
+            self.n_figures += 1
+            self.look_at(" ".join(text.get_text() for text in drawn.findobj(Text)), (self.scene_name, figure["name"]))
+
     def strings(self, value):
         if isinstance(value, str):
             yield value
@@ -235,17 +249,16 @@ class Texts(Case):
         self.ask("export", "one.h5", "--format", "lammps", "--force")
         self.look_at_notes()
         self.look_at_page()
-        self.ask("report", "one.h5", "--figures", "figures", "--force")
-        for svg in (self.folder / "figures").glob("*.svg"):
-            texts = xml.etree.ElementTree.parse(svg).getroot().iter("{http://www.w3.org/2000/svg}text")
-            self.look_at(" ".join("".join(text.itertext()) for text in texts), (name, svg.name))
+        self.look_at_figures()
 
 
 def test_of(name):
     def test(self):
         self.go_through(name)
-        print(f"{name}: {self.n_commands} commands, {self.n_texts} texts, {len(self.found)} found")
+        print(f"{name}: {self.n_commands} commands, {self.n_figures} figures, {self.n_texts} texts, "
+              f"{len(self.found)} found")
         self.assertEqual(self.found, [])
+        self.assertEqual(self.n_figures > 0, name != "all failed")
         self.assertGreaterEqual(self.n_commands, 12)
     return test
 
