@@ -1,6 +1,7 @@
 """Running the program as a user does, on scenes of seconds."""
 
 import copy
+import inspect
 import json
 import os
 import pathlib
@@ -71,23 +72,45 @@ EVERY = bool(os.environ.get("JOSTLE_EVERY"))
 
 
 def some(cases, count):
-    """`count` of the cases, the first and the last among them, the same at every call; all where EVERY is set."""
+    """`count` of the cases, the first and the last among them, the same at every call; all where EVERY is set. Called
+    by a method of the test's class, as has_more_cases() expects."""
     cases = list(cases)
     if EVERY or len(cases) <= count:
         return cases
+    if Case.running and not has_more_cases(type(Case.running), Case.running._testMethodName):
+        raise AssertionError("call some() in a method of the class: elsewhere it is not seen where EVERY is set")
     inner = random.Random(len(cases)).sample(range(1, len(cases) - 1), count - 2)
     return [cases[0], *(cases[at] for at in sorted(inner)), cases[-1]]
 
 
+def has_more_cases(cls, name, seen=()):
+    """True if a method, or one of its class that it calls, refers to some() or EVERY: it tries more where EVERY is set.
+    Decorators are not seen: `if not EVERY: self.skipTest(...)` in place of skipUnless(EVERY, ...)."""
+    codes, names = [getattr(getattr(cls, name, None), "__code__", None)], set()
+    while codes:
+        if code := codes.pop():
+            names |= set(code.co_names)
+            codes += [part for part in code.co_consts if inspect.iscode(part)]
+    return bool(names & {"some", "EVERY"}) or any(has_more_cases(cls, other, (*seen, name)) for other in names - {*seen, name})
+
+
 class Case(unittest.TestCase):
-    """A test in a folder of its own, where it runs the program."""
+    """A test in a folder of its own, where it runs the program. Where EVERY is set, tests without further cases are
+    skipped, because the daily run has all their cases."""
 
     maxDiff = None
+    running = None
+
+    def __init_subclass__(cls):
+        for name in dir(cls) if EVERY else ():
+            if name.startswith("test") and not has_more_cases(cls, name):
+                setattr(cls, name, unittest.skip("the daily run has all cases")(lambda self: None))
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="jostle-cli-", dir=SCRATCH)
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(os.path.realpath(folder.name))
+        Case.running = self
 
     def write(self, scene, name="scene.json"):
         text = scene if isinstance(scene, str) else json.dumps(scene)
