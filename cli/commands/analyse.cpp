@@ -153,7 +153,7 @@ std::string file_or_kind_fault(const std::string& text) {
                                        "ordering", "sweep",    "volumes", "memory"};
   if (std::ranges::find(kinds, text) != kinds.end())
     return fmt::format("{0} is an analysis, and follows the files: jostle analyse FILE {0}", text);
-  return fmt::format("{}: there is no such file, and no such analysis; there are {}.{}", text,
+  return fmt::format("{} is neither a file nor an analysis; the analyses are {}.{}", text,
                      joined(kinds, ", "), did_you_mean(text, kinds));
 }
 

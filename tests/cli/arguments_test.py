@@ -165,7 +165,7 @@ class Words(Refused):
         self.refused("analyze", answer='analyze: there is no such command; there are new, run, check')
         self.refused("analyze", answer='Did you mean "analyse"?')
         self.refused("analyse", "tiny.h5", "stedy", "--observable", "mean_height",
-                     answer="stedy: there is no such file, and no such analysis; there are steady")
+                     answer="stedy is neither a file nor an analysis; the analyses are steady")
         self.refused("analyse", "steady", "tiny.h5", "--observable", "mean_height",
                      answer="steady is an analysis, and follows the files: jostle analyse FILE st")
 
