@@ -64,21 +64,66 @@ double alternating_rho(double sum, std::size_t last) {
   return 0.5 * (low + high);
 }
 
+/// Covariances of AR(1) of variance 1 with a weighted sum of n taps, [n]: forwards and backwards,
+/// each tap once.
+std::vector<double> with_weighted_sum(double rho, std::span<const double> weights) {
+  std::vector<double> found(weights.begin(), weights.end());
+  double before = 0, after = 0;
+  for (std::size_t i = 0, n = weights.size(); i < n; ++i) {
+    found[i] += before;
+    before = rho * (before + weights[i]);
+    found[n - 1 - i] += after;
+    after = rho * (after + weights[n - 1 - i]);
+  }
+  return found;
+}
+
+/// Sums of a[i] b[i + lag] + b[i] a[i + lag] for lags 0 .. last, by transforms.
+std::vector<double> crossed_products(std::span<const double> a, std::span<const double> b,
+                                     std::size_t last) {
+  const std::size_t padded = std::bit_ceil(a.size() + last + 1);
+  const auto transform_of = [padded](std::span<const double> values) {
+    std::vector<double> longer(values.begin(), values.end());
+    longer.resize(padded, 0.0);
+    std::vector<std::complex<double>> transform;
+    Eigen::FFT<double>().fwd(transform, longer);
+    return transform;
+  };
+  const std::vector<std::complex<double>> of_b = transform_of(b);
+  std::vector<std::complex<double>> product = transform_of(a);
+  for (std::size_t k = 0; k < product.size(); ++k)
+    product[k] = 2 * (product[k] * std::conj(of_b[k])).real();
+  std::vector<double> products;
+  Eigen::FFT<double>().inv(products, product);
+  products.resize(last + 1);
+  return products;
+}
+
 /// Expectations of covariances of AR(1) of variance 1 and this autocorrelation time, about the
-/// means of series of n taps.
+/// means or lines of series of n taps.
 struct ExpectedSum {
   double time = 0.5;    // 1/2 + sum of correlations over lags 1 .. last, as from the covariances
   double variance = 0;  // at lag 0
   std::vector<double> lowered;  // [last + 1], by which the covariances are too small
 
-  ExpectedSum(double autocorrelation_time, std::size_t n, std::size_t last) {
+  ExpectedSum(double autocorrelation_time, std::size_t n, std::size_t last, Removed removed) {
     const double rho = rho_of(autocorrelation_time);
-    // With the mean of each tap's covariances with all taps, and the sums of these from the first.
-    std::vector<double> powers(n), sums(n + 1, 0.0), shared(n + 1, 0.0);
-    for (std::size_t i = 0; i < n; ++i) {
-      powers[i] = i == 0 ? 1 : powers[i - 1] * rho;
-      sums[i + 1] = sums[i] + powers[i];
+    lower_by_mean(rho, n, last);
+    if (removed == Removed::line) lower_by_slope(rho, n, last);
+    double power = 1;
+    for (std::size_t t = 0; t <= last; ++t, power *= rho) {
+      const double covariance = power - lowered[t];
+      if (t == 0) variance = covariance;
+      if (t > 0) time += covariance / variance;
     }
+  }
+
+ private:
+  void lower_by_mean(double rho, std::size_t n, std::size_t last) {
+    // With the mean of each tap's covariances with all taps, and the sums of these from the first.
+    std::vector<double> sums(n + 1, 0.0), shared(n + 1, 0.0);
+    double power = 1;
+    for (std::size_t i = 0; i < n; ++i, power *= rho) sums[i + 1] = sums[i] + power;
     const auto length = static_cast<double>(n);
     for (std::size_t i = 0; i < n; ++i)
       shared[i + 1] = shared[i] + (sums[i + 1] + sums[n - i] - 1) / length;
@@ -86,10 +131,24 @@ struct ExpectedSum {
     for (std::size_t t = 0; t <= last; ++t) {
       lowered.push_back((shared[n - t] + shared[n] - shared[t]) / static_cast<double>(n - t) -
                         of_mean);
-      const double covariance = powers[t] - lowered.back();
-      if (t == 0) variance = covariance;
-      if (t > 0) time += covariance / variance;
     }
+  }
+
+  // The slope is the product with taps about their middle, of length 1; it does not correlate with
+  // the mean.
+  void lower_by_slope(double rho, std::size_t n, std::size_t last) {
+    const auto length = static_cast<double>(n);
+    const double scale = 1 / std::sqrt(length * (length * length - 1) / 12);
+    std::vector<double> taps(n);
+    for (std::size_t i = 0; i < n; ++i)
+      taps[i] = (static_cast<double>(i) - 0.5 * (length - 1)) * scale;
+    std::vector<double> shared = with_weighted_sum(rho, taps);
+    double of_slope = 0;
+    for (std::size_t i = 0; i < n; ++i) of_slope += taps[i] * shared[i];
+    // Each tap's covariance with the slope, less half of the slope's own share.
+    for (std::size_t i = 0; i < n; ++i) shared[i] -= 0.5 * of_slope * taps[i];
+    const std::vector<double> products = crossed_products(taps, shared, last);
+    for (std::size_t t = 0; t <= last; ++t) lowered[t] += products[t] / static_cast<double>(n - t);
   }
 };
 
@@ -144,43 +203,61 @@ AutocorrelationTime Autocorrelation::lower_bound(const Sum& sum) const {
   return bound;
 }
 
-AutocorrelationTime Autocorrelation::about_means(const Sum& sum) const {
-  const auto expected = [&](double time) { return ExpectedSum(time, n_, sum.last); };
+/// An AR(1) process, and by how much its expected sum grows with its time.
+struct Autocorrelation::Process {
+  double time = 0, error = 0;
+  double gain = 0, scatter = 0;  // of the sum
+};
+
+std::optional<Autocorrelation::Process> Autocorrelation::process_of(const Sum& sum) const {
+  const auto expected = [&](double time) { return ExpectedSum(time, n_, sum.last, removed_).time; };
   const double first_order = to_first_order(sum).time;
   // From below the solution, upwards by steps until the sum is reached; it falls beyond its
   // maximum.
   constexpr double step = 1.1;
-  const auto length = static_cast<double>(n_);
   const double lowest = sum.last == 1 ? time_of(lowest_rho) : 0.05;
   double low = std::fmax(lowest, 0.9 * first_order);
-  while (low > lowest && expected(low).time > sum.time) low /= step;
+  while (low > lowest && expected(low) > sum.time) low /= step;
   double high = low;
-  while (expected(high).time < sum.time) {
+  while (expected(high) < sum.time) {
     low = high;
     high *= step;
-    if (high > length) return lower_bound(sum);
+    if (high > static_cast<double>(n_)) return std::nullopt;
   }
   for (int i = 0; i < 40 && high - low > 1e-9 * high; ++i) {
     const double middle = 0.5 * (low + high);
-    (expected(middle).time < sum.time ? low : high) = middle;
+    (expected(middle) < sum.time ? low : high) = middle;
   }
-  AutocorrelationTime result{.time = 0.5 * (low + high), .window = sum.last};
-  const ExpectedSum found = expected(result.time), larger = expected(1.01 * result.time);
-  const double gain = (larger.time - found.time) / (0.01 * result.time);
-  if (!(gain > 0)) return lower_bound(sum);
+  Process found{.time = 0.5 * (low + high)};
+  found.gain = (expected(1.01 * found.time) - expected(found.time)) / (0.01 * found.time);
+  if (!(found.gain > 0)) return std::nullopt;
   // Means take a part of the sum's scatter with them: about as much of its square as of its gain.
-  const double scatter = wolff_error(result.time, sum.last, realizations_ * n_);
-  result.error = scatter / std::sqrt(gain);
-  if (sum.last == 1 && result.time < 0.5) {
-    result.error = alternating_error(rho_of(result.time), realizations_ * n_);
-  }
-  if (length < fewest_times * (result.time + scatter / gain)) return lower_bound(sum);
+  found.scatter = wolff_error(found.time, sum.last, realizations_ * n_);
+  found.error = sum.last == 1 && found.time < 0.5
+                    ? alternating_error(rho_of(found.time), realizations_ * n_)
+                    : found.scatter / std::sqrt(found.gain);
+  return found;
+}
+
+AutocorrelationTime Autocorrelation::about_means(const Sum& sum) const {
+  const std::optional<Process> process = process_of(sum);
+  if (!process ||
+      static_cast<double>(n_) < fewest_times * (process->time + process->scatter / process->gain))
+    return lower_bound(sum);
+  AutocorrelationTime result{.time = process->time, .error = process->error, .window = sum.last};
+  const ExpectedSum found(result.time, n_, sum.last, removed_);
+  const ExpectedSum larger(1.01 * result.time, n_, sum.last, removed_);
   result.variance = covariance(0) / found.variance;
   result.variance_error = result.variance * result.error *
                           std::abs(larger.variance / found.variance - 1) / (0.01 * result.time);
   for (std::size_t t = 1; t <= sum.last; ++t) {
     const double correlation = covariance(t) / result.variance + found.lowered[t];
     result.squares += correlation * correlation;
+  }
+  if (sum.last == 1 && result.time < 0.5) {
+    // The squares of a series that alternates go on beyond the window of one lag.
+    const double square = rho_of(result.time) * rho_of(result.time);
+    result.squares = square / (1 - square);
   }
   return result;
 }
@@ -196,8 +273,7 @@ AutocorrelationTime Autocorrelation::about_lines(const Sum& sum) const {
   return result;
 }
 
-AutocorrelationTime Autocorrelation::result() const {
-  if (!(covariance(0) > 0)) return {.time = 0.5, .error = 0, .window = 1};
+Autocorrelation::Sum Autocorrelation::summed() const {
   Sum sum;
   while (++sum.last < products_.size()) {
     sum.time += covariance(sum.last) / covariance(0);
@@ -205,8 +281,22 @@ AutocorrelationTime Autocorrelation::result() const {
   }
   sum.has_ended = sum.last < products_.size();
   if (!sum.has_ended) sum.last = products_.size() - 1;
+  return sum;
+}
+
+AutocorrelationTime Autocorrelation::result() const {
+  if (!(covariance(0) > 0)) return {.time = 0.5, .error = 0, .window = 1};
+  const Sum sum = summed();
   if (removed_ == Removed::line) return about_lines(sum);
   return sum.has_ended ? about_means(sum) : lower_bound(sum);
+}
+
+AutocorrelationTime Autocorrelation::unbiased() const {
+  if (!(covariance(0) > 0)) return {.time = 0.5, .error = 0, .window = 1};
+  const Sum sum = summed();
+  const std::optional<Process> process = sum.has_ended ? process_of(sum) : std::nullopt;
+  if (!process) return lower_bound(sum);
+  return {.time = process->time, .error = process->error, .window = sum.last};
 }
 
 Line fit_line(std::span<const double> series) {

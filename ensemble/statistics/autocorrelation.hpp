@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -50,9 +51,16 @@ class Autocorrelation {
 
   void add(std::span<const double> series);
   AutocorrelationTime result() const;
+  /// The time of the AR(1) process whose covariances, about the means or lines of series of this
+  /// length, have the sum that was found, however short the series are against it; a lower bound
+  /// where no process has it. Time, error and window only.
+  AutocorrelationTime unbiased() const;
 
  private:
   struct Sum;
+  struct Process;
+  Sum summed() const;
+  std::optional<Process> process_of(const Sum& sum) const;
   double covariance(std::size_t lag) const;
   AutocorrelationTime to_first_order(const Sum& sum) const;
   AutocorrelationTime lower_bound(const Sum& sum) const;

@@ -65,6 +65,8 @@ class TrendTest {
   void add(std::span<const double> series);
   /// After at least one series.
   Trend result() const;
+  /// The memory about these lines without the bias of short series, for AR(1).
+  AutocorrelationTime unbiased_memory() const { return about_lines_.unbiased(); }
 
  private:
   /// Means of blocks of one length about their own line, pooled over series.

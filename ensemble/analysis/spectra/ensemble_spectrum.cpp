@@ -14,6 +14,7 @@ namespace {
 
 struct Points {
   std::vector<double> x, y;
+  std::vector<Eigen::Index> bin;
 };
 
 Points in_band(std::span<const double> frequency, std::span<const double> log_density,
@@ -26,6 +27,7 @@ Points in_band(std::span<const double> frequency, std::span<const double> log_de
     if (!inside || frequency[i] <= 0 || !std::isfinite(log_density[i])) continue;
     points.x.push_back(std::log(frequency[i]));
     points.y.push_back(log_density[i]);
+    points.bin.push_back(static_cast<Eigen::Index>(i));
   }
   return points;
 }
@@ -107,7 +109,9 @@ SpectrumAverage::SpectrumAverage(std::size_t n_taps, const SpectrumOptions& opti
       slope_bins_(logarithmic_bins(options.segment, first_sound_line(options), bins_per_decade,
                                    (options.segment + 1) / 2)),
       relative_errors_(relative_errors_of(bins_, n_taps, options)),
-      slope_errors_(relative_errors_of(slope_bins_, n_taps, options)) {
+      slope_errors_(relative_errors_of(slope_bins_, n_taps, options)),
+      slope_covariances_(
+          relative_covariances(options, n_segments(n_taps, options), slope_bins_.first)) {
   assert(options.segment > 0 && n_segments(n_taps, options) > 0);
 }
 
@@ -155,13 +159,37 @@ LogLogSlope SpectrumAverage::slope(const Band& band) const {
     return straight_line(in_band(slope_bins_.frequency, sound_log_density(left_out), band));
   };
   LogLogSlope slope = spectrum_without(none_left_out);
-  if (slope_densities_.size() < 3) return slope;
+  if (slope_densities_.size() < 3) {
+    if (slope.n_points >= 3) slope.error = gaussian_error(sound_log_density(none_left_out), band);
+    slope.dof = std::numeric_limits<double>::infinity();
+    return slope;
+  }
   Moments slopes;
   for (std::size_t r = 0; r < slope_densities_.size(); ++r) slopes.add(spectrum_without(r).slope);
   // Tukey 1958: leaving one out moves an estimate by 1/(n - 1) of what redrawing it would.
   slope.dof = static_cast<double>(slope_densities_.size() - 1);
   slope.error = slopes.sigma() * std::sqrt(slope.dof);
   return slope;
+}
+
+double SpectrumAverage::gaussian_error(std::span<const double> log_density,
+                                       const Band& band) const {
+  const Points points = in_band(slope_bins_.frequency, log_density, band);
+  const Eigen::Map<const Eigen::ArrayXd> x(points.x.data(),
+                                           static_cast<Eigen::Index>(points.x.size()));
+  const Eigen::ArrayXd apart = x - x.mean();
+  const Eigen::VectorXd weights = (apart / apart.square().sum()).matrix();
+  Eigen::MatrixXd of_logarithms =
+      slope_covariances_(points.bin, points.bin) / static_cast<double>(slope_densities_.size());
+  for (Eigen::Index b = 0; b < of_logarithms.rows(); ++b) {
+    for (Eigen::Index c = 0; c < of_logarithms.cols(); ++c) {
+      // The variance of the logarithm of a mean of k = 1/v exponential variables; of two that share
+      // the part v, the first terms of the dilogarithm.
+      const double v = of_logarithms(b, c);
+      of_logarithms(b, c) = b == c ? v + v * v / 2 + v * v * v / 6 : v + v * v / 4;
+    }
+  }
+  return std::sqrt(weights.dot(of_logarithms * weights));
 }
 
 double SpectrumAverage::autoregressive_slope(double time, const Band& band) const {

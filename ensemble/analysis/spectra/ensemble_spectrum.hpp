@@ -68,7 +68,7 @@ class SpectrumAverage {
   /// The slope of the mean spectrum. The mean of k independent exponential variables, chi
   /// squared of 2 k degrees of freedom, has a logarithm that is low by 1/(2 k) + 1/(12 k^2) on
   /// average: this is put right before the fit. The error is a jackknife over realizations, of
-  /// M - 1 degrees of freedom; of fewer than 3, from the scatter about the line.
+  /// M - 1 degrees of freedom; of fewer than 3, that of Gaussian noise, of infinitely many.
   LogLogSlope slope(const Band& band) const;
   /// Returns the mean of slope() for an AR(1) process of autocorrelation time `time` > 0 (below
   /// 1/2: of negative rho), without its scatter, for the windows, bins, band and straight line of
@@ -77,6 +77,7 @@ class SpectrumAverage {
 
  private:
   std::vector<double> sound_log_density(std::size_t left_out) const;
+  double gaussian_error(std::span<const double> log_density, const Band& band) const;
 
   std::size_t n_taps_;
   SpectrumOptions options_;
@@ -85,6 +86,7 @@ class SpectrumAverage {
   /// it would bend the end of the spectrum down.
   FrequencyBins slope_bins_;
   std::vector<double> relative_errors_, slope_errors_;            // [n_bins], of one realization
+  Eigen::MatrixXd slope_covariances_;                             // of slope_bins_, likewise
   std::vector<std::vector<double>> densities_, slope_densities_;  // [n_realizations][n_bins]
 };
 

@@ -142,6 +142,31 @@ std::vector<double> relative_errors(const SpectrumOptions& options, std::size_t 
   return errors;
 }
 
+Eigen::MatrixXd relative_covariances(const SpectrumOptions& options, std::size_t segments,
+                                     std::span<const std::size_t> first) {
+  assert(options.segment >= 2 && segments >= 1 && !first.empty());
+  constexpr std::size_t farthest = 64;  // lines, beyond which no window makes them share anything
+  const std::vector<double> shared = shared_power(options, segments);
+  const auto n_bins = static_cast<Eigen::Index>(first.size() - 1);
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(n_bins, n_bins);
+  const auto lines_of = [&](Eigen::Index b) {
+    return first[static_cast<std::size_t>(b + 1)] - first[static_cast<std::size_t>(b)];
+  };
+  std::vector<Eigen::Index> bin_of;
+  for (Eigen::Index b = 0; b < n_bins; ++b) bin_of.insert(bin_of.end(), lines_of(b), b);
+  for (std::size_t k = 0; k < bin_of.size(); ++k) {
+    for (std::size_t l = k - std::min(k, farthest); l <= k; ++l) {
+      sums(bin_of[k], bin_of[l]) += shared[k - l];
+      if (l < k) sums(bin_of[l], bin_of[k]) += shared[k - l];
+    }
+  }
+  for (Eigen::Index b = 0; b < n_bins; ++b) {
+    for (Eigen::Index c = 0; c < n_bins; ++c)
+      sums(b, c) /= static_cast<double>(segments * lines_of(b) * lines_of(c));
+  }
+  return sums;
+}
+
 std::vector<double> expected_welch(const SpectrumOptions& options,
                                    const std::function<double(std::size_t)>& covariance) {
   const std::size_t n = options.segment;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -55,6 +56,12 @@ std::size_t first_sound_line(const SpectrumOptions& options);
 /// `options.segment` > 0; every element of `lines` in 1 .. n/2 + 1.
 std::vector<double> relative_errors(const SpectrumOptions& options, std::size_t segments,
                                     std::span<const std::size_t> lines);
+
+/// Covariances, relative to both means, of means of lines first[b] .. first[b + 1] - 1 and of lines
+/// first[c] .. first[c + 1] - 1 of a Welch estimate, as relative_errors(). Symmetric, [n_bins,
+/// n_bins].
+Eigen::MatrixXd relative_covariances(const SpectrumOptions& options, std::size_t segments,
+                                     std::span<const std::size_t> first);
 
 /// Means of the lines of welch(), up to a common factor, for a stationary process with this
 /// covariance at lags 0 .. segment - 1; what detrending takes from the first sound line on is

@@ -64,9 +64,9 @@ AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogS
   const auto value_at = [&](double time) {
     return average.autoregressive_slope(std::max(time, shortest), band);
   };
+  if (!memory.found()) return {not_a_number, {}, not_a_number};
   AutoregressiveSlope found{.slope = value_at(memory.time)};
-  // A short series' memory comes out too short, and its lowest lines too low: by so much slopes of
-  // true AR(1) are off, however many realizations there are.
+  // By so much slopes of true AR(1) are off in short series, however many realizations there are.
   constexpr double bias = 0.03;
   // A time that is below 1/2 by less than two errors may be that of white noise, whose slope is 0.
   const bool may_be_white = memory.time < 0.5 && memory.time + 2 * memory.error > 0.5;
@@ -80,14 +80,18 @@ AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogS
 }
 
 std::string slope_verdict(const LogLogSlope& slope, const AutoregressiveSlope& memory,
-                          const Trend& trend) {
-  const AutocorrelationTime& time = trend.memory;
+                          const AutocorrelationTime& time, const Trend& trend) {
   if (trend.is_constant()) return "no slope: the series is constant";
   if (std::isnan(slope.slope)) return "no slope: fewer than three points in the band";
+  if (!time.found())
+    return finite_text(
+        "no test: the taps are too few to estimate the autocorrelation time ({:.3g} taps or more), "
+        "and with it the slope of a stationary AR(1)",
+        time.time);
   if (!std::isfinite(memory.slope)) return "no stationary AR(1) to compare the slope with";
-  const std::string alone =
-      finite_text("a stationary AR(1) with {} autocorrelation time, {:.3g} taps, has {:.2f} here",
-                  time.found() ? "the same" : "this lower bound of the", time.time, memory.slope);
+  const std::string alone = finite_text(
+      "a stationary AR(1) with the same autocorrelation time, {:.3g} taps, has {:.2f} here",
+      time.time, memory.slope);
   if (std::isnan(memory.p)) return alone + "; no test";
   if (memory.p >= significance_level) {
     return finite_text("{}: the slope does not differ significantly from it ({})", alone,
@@ -128,7 +132,8 @@ Table SpectrumAnalysis::table() const {
                                              static_cast<double>(options_.segment),
                                    .highest = 0.5});
   const LogLogSlope slope = average_.slope(band);
-  const AutoregressiveSlope memory = autoregressive(average_, slope, trend.memory, band);
+  const AutocorrelationTime time = trend_.unbiased_memory();
+  const AutoregressiveSlope memory = autoregressive(average_, slope, time, band);
   const double dof = spectrum.realizations > 1 ? static_cast<double>(spectrum.realizations - 1)
                                                : std::numeric_limits<double>::infinity();
   std::vector<std::uint64_t> lines;
@@ -155,8 +160,7 @@ Table SpectrumAnalysis::table() const {
   add("slope", slope.slope, "1", "log-log slope in the band",
       "Philippe & Bideau 2001, fig. 3: -1 to -1.5");
   add("slope_error", slope.error, "1",
-      spectrum.realizations > 2 ? "jackknife over realizations"
-                                : "from the scatter about the line");
+      spectrum.realizations > 2 ? "jackknife over realizations" : "for Gaussian noise");
   add("slope_dof", slope.dof, "1", "degrees of freedom of slope_error");
   add("ar1_slope", trend.is_constant() ? std::nan("") : memory.slope, "1",
       "in the same band, of an AR(1) process of the same autocorrelation time");
@@ -184,7 +188,7 @@ Table SpectrumAnalysis::table() const {
                  {"band", finite_text("{:.4g} to {:.4g} per tap, {} points", band.lowest,
                                       band.highest, slope.n_points)},
                  {"drift", drift_verdict(trend, options_.detrending)},
-                 {"verdict", slope_verdict(slope, memory, trend)}};
+                 {"verdict", slope_verdict(slope, memory, time, trend)}};
   return table;
 }
 

@@ -242,7 +242,7 @@ MemoryCounts memory_counts(std::size_t realizations, std::size_t n_taps, double 
     }
     ++counts.given;
     const auto is_covered = [](double deviation, const ErrorOf& error, double level) {
-      return std::abs(deviation) <= error.error * student_two_sided(level, error.dof);
+      return std::abs(deviation) <= error.error * two_sided(level, error.dof);
     };
     const ErrorOf time_error{found.error, 1e6};
     counts.sigma_68 += is_covered(state.sigma - sigma, state.sigma_error, interval_levels[0]);
@@ -314,6 +314,18 @@ TEST_CASE("Intervals of sigma and of the autocorrelation time hold them, or are 
 TEST_CASE("Intervals of sigma and of the autocorrelation time hold them, of any length",
           "[nightly]") {
   check_memories({75, 300, 1000}, 400);
+}
+
+TEST_CASE("The sigma of one alternating realization has an interval that holds it",
+          "[statistics]") {
+  for (const double rho : {-0.9, -0.5}) {
+    const MemoryCounts counts = memory_counts(1, 300, 0.5 * (1 + rho) / (1 - rho), 300);
+    fmt::print("rho {}: sigma within 68 %: {:.1f} %, 95 %: {:.1f} %\n", rho,
+               100 * counts.share(counts.sigma_68), 100 * counts.share(counts.sigma_95));
+    CAPTURE(rho, counts.given);
+    CHECK(counts.share(counts.sigma_68) >= 0.62 - 3 * deviation(0.62, counts.given));
+    CHECK(counts.share(counts.sigma_95) >= 0.9 - 3 * deviation(0.9, counts.given));
+  }
 }
 
 TEST_CASE("Steady series of two time scales are seldom called unsteady", "[statistics]") {

@@ -8,6 +8,7 @@
 
 #include "ensemble/analysis/analyses.hpp"
 #include "ensemble/moments.hpp"
+#include "fitting/intervals/distributions.hpp"
 #include "tests/ensemble/synthetic_series.hpp"
 
 // Calibration of the slope of a spectrum, for series that are AR(1) and series that are not.
@@ -117,7 +118,8 @@ struct FalseAlarms {
 
 /// Ensembles of AR(1) of `taps` taps, analysed with segments of so many taps.
 FalseAlarms false_alarms(std::size_t segment, std::size_t taps, double time,
-                         std::size_t realizations, std::size_t ensembles) {
+                         std::size_t realizations, std::size_t ensembles,
+                         Taper window = Taper::hann) {
   const double rho = (2 * time - 1) / (2 * time + 1);
   FalseAlarms found;
   double second = 0;
@@ -125,7 +127,7 @@ FalseAlarms false_alarms(std::size_t segment, std::size_t taps, double time,
     std::vector<std::vector<double>> ensemble;
     for (std::size_t r = 0; r < realizations; ++r)
       ensemble.push_back(synthetic::autoregressive(rho, taps, 20261129 + e, r));
-    const Table table = analysed(ensemble, {.segment = segment});
+    const Table table = analysed(ensemble, {.segment = segment, .window = window});
     found.slopes.add(number(table, "slope"));
     second += number(table, "ar1_slope_p") < 0.05;
   }
@@ -157,4 +159,65 @@ void check_segments(std::size_t ensembles, const std::vector<double>& times) {
 TEST_CASE("White noise has slope 0 in segments of any length, and is not called other",
           "[statistics]") {
   check_segments(400, {0.5});
+}
+
+TEST_CASE("AR(1) in one segment is called other at the level of the test", "[statistics]") {
+  // As long as the taps, and with so many realizations that a small bias of the memory would show.
+  constexpr std::size_t ensembles = 60, realizations = 20;
+  for (const Taper window : {Taper::hann, Taper::boxcar}) {
+    for (const auto& [taps, time] : {std::pair{100, 9.5}, std::pair{600, 60.0}}) {
+      const auto n = static_cast<std::size_t>(taps);
+      const FalseAlarms found = false_alarms(n, n, time, realizations, ensembles, window);
+      CAPTURE(window, taps, time);
+      CHECK(found.share <= 0.05 + 3 * std::sqrt(0.05 * 0.95 / ensembles));
+    }
+  }
+}
+
+namespace {
+
+/// Shares of slopes of AR(1) within their 68 and 95 % intervals about the mean slope.
+void check_coverage_of_slopes(std::size_t realizations, const SpectrumSettings& settings,
+                              double rho, std::size_t ensembles) {
+  std::vector<double> slopes;
+  std::vector<ErrorOf> errors;
+  Moments all;
+  for (std::size_t e = 0; e < ensembles; ++e) {
+    std::vector<std::vector<double>> ensemble;
+    for (std::size_t r = 0; r < realizations; ++r)
+      ensemble.push_back(synthetic::autoregressive(rho, 500, 20261130 + e, r));
+    const Table table = analysed(ensemble, settings);
+    slopes.push_back(number(table, "slope"));
+    errors.push_back({number(table, "slope_error"), number(table, "slope_dof")});
+    all.add(slopes.back());
+  }
+  const auto share_within = [&](double level) {
+    double held = 0;
+    for (std::size_t e = 0; e < ensembles; ++e) {
+      held += std::abs(slopes[e] - all.mean()) <= errors[e].error * two_sided(level, errors[e].dof);
+    }
+    return held / static_cast<double>(ensembles);
+  };
+  const double at_68 = share_within(interval_levels[0]), at_95 = share_within(interval_levels[1]);
+  fmt::print("M {}, rho {:>4}, {}, segment {:>3}: slope within 68 %: {:.1f} %, 95 %: {:.1f} %\n",
+             realizations, rho, settings.window == Taper::hann ? "hann" : "boxcar",
+             settings.segment.value_or(0), 100 * at_68, 100 * at_95);
+  std::fflush(stdout);
+  const auto n = static_cast<double>(ensembles);
+  CAPTURE(realizations, rho);
+  CHECK(at_68 >= 0.6 - 3 * std::sqrt(0.6 * 0.4 / n));
+  CHECK(at_68 <= 0.8 + 3 * std::sqrt(0.8 * 0.2 / n));
+  CHECK(at_95 >= 0.9 - 3 * std::sqrt(0.9 * 0.1 / n));
+}
+
+}  // namespace
+
+TEST_CASE("Slopes of one and two realizations have intervals that hold them", "[statistics]") {
+  for (const std::size_t realizations : {1, 2}) {
+    for (const double rho : {0.0, 0.9}) {
+      check_coverage_of_slopes(realizations, {}, rho, 300);
+      check_coverage_of_slopes(realizations, {.segment = 500}, rho, 300);
+    }
+  }
+  check_coverage_of_slopes(2, {.window = Taper::boxcar}, 0.9, 300);
 }
