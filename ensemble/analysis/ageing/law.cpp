@@ -300,7 +300,9 @@ Eigen::VectorXd AgeingLeastSquares::lowest_point() const {
 }
 
 bool AgeingLeastSquares::describes_curves() const {
-  constexpr double level = 0.95;
+  // Each tau is tested, and B unless it is held: one of so many (Bonferroni).
+  const auto tests = static_cast<double>(curves_.size() + (b_is_held() ? 0 : 1));
+  const double level = 1 - significance_level / tests;
   const auto falls_on = [&](std::size_t parameter) {
     const Eigen::VectorXd weights = weights_of(parameter, best_);
     const ErrorOf error = error_of_sum(curves_, weights);

@@ -51,6 +51,9 @@ SweepCurve::SweepCurve(std::vector<double> x, std::vector<double> y, std::vector
     return group_error.dof + 1 >= fewest_for_own_error && group_error.error > 0;
   };
   own_errors_ = std::ranges::all_of(error_, serves);
+  for (const ErrorOf& group_error : error_) {
+    if (group_error.known() && std::isfinite(group_error.dof)) scatter_.push_back(group_error);
+  }
   if (own_errors_) return;
   double variance = 0;
   for (const ErrorOf& group_error : error_) {

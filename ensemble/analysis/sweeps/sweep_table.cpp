@@ -123,13 +123,17 @@ Errors numbers(const std::vector<ErrorOf>& errors) {
 // The assumption of pooling.
 void add_scatter(const SweepCurve& curve, Table& table) {
   const double p = curve.p_of_equal_scatter();
-  add_value("pooled_sigma_p", p, "1", "p-value of realizations scattering alike at all points",
+  const bool each = curve.has_realizations();
+  add_value("pooled_sigma_p", p, "1",
+            each ? "p-value of realizations scattering alike at all points"
+                 : "p-value of equal errors at all points",
             table, "Bartlett 1937, doi:10.1098/rspa.1937.0109");
   if (!(p < significance_level) || !curve.pools()) return;
   table.notes.emplace_back(
-      "scatter", finite_text("realizations do not scatter alike at all points ({}): errors "
-                             "from the pooled variance are too small where they scatter most",
-                             p_text(p)));
+      "scatter", finite_text("{} ({}): errors from the pooled variance are too small where {} most",
+                             each ? "realizations do not scatter alike at all points"
+                                  : "the errors of the points differ",
+                             p_text(p), each ? "they scatter" : "values scatter"));
 }
 
 }  // namespace
@@ -164,7 +168,7 @@ Table sweep_table(std::string name, const SweptValue& swept, const Column& quant
                 : "deviation of one realization, pooled over points",
             table);
   add_value("pooled_sigma_dof", curve.pooled().dof, "1", "its degrees of freedom", table);
-  if (curve.has_realizations()) add_scatter(curve, table);
+  add_scatter(curve, table);
   add_extremum("maximum", "highest", maximum(curve), swept, quantity, table);
   add_extremum("minimum", "lowest", minimum(curve), swept, quantity, table);
   const std::string slope_units =

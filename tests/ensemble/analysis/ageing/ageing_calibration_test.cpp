@@ -163,6 +163,31 @@ TEST_CASE("Intervals of eq. 6 hold the truth at their stated rate", "[statistics
   check_coverage(Laws::own, 10, {.common_part = 0.9}, 40, 40'000);
 }
 
+TEST_CASE("A law that all waiting times share is rejected at the level of one test",
+          "[statistics]") {
+  // Random walks, A = t: eq. 6 with every tau at the edge of the search, so that all nine are
+  // tested.
+  const AgeingGrid walks = {.waiting_times = {1, 2, 4, 8, 16, 32, 64, 128},
+                            .lags = {1, 3, 10, 30, 100}};
+  constexpr std::uint32_t m = 4;
+  constexpr int n = 300;
+  int disowned = 0;
+  for (int e = 0; e < n; ++e) {
+    RandomStream random = test_stream(120'000 + static_cast<std::uint64_t>(e));
+    std::vector<double> walk(m, 0.0), series;
+    for (std::size_t tap = 0; tap <= 228; ++tap) {
+      for (double& x : walk) series.push_back(x += noise(random));
+    }
+    const std::vector<std::uint64_t> taps = taps_of(walks);
+    const std::vector<std::uint32_t> all = {0, 1, 2, 3};
+    const LogCurves curves =
+        log_curves(choose_taps(series, m, taps), walks, all, Changes::mean_square);
+    disowned += !AgeingLeastSquares(curves).describes();
+  }
+  fmt::print("random walks, eight waiting times: {:.1f} % disowned\n", 100.0 * disowned / n);
+  CHECK(disowned <= n * (0.05 + 3 * deviation(0.05, n)));
+}
+
 TEST_CASE("Intervals of eq. 6 hold the truth at every number of realizations", "[nightly]") {
   fmt::print(coverage_heading);
   for (const Laws laws : {Laws::own, Laws::shared}) {

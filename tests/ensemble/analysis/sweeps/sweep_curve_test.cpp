@@ -324,6 +324,27 @@ TEST_CASE("A table of a sweep holds the curve, its maximum and its line") {
   }
 }
 
+TEST_CASE("Errors of values without realizations are tested for being equal, as they are pooled") {
+  std::vector<std::vector<double>> values;
+  for (std::size_t i = 0; i < strengths.size(); ++i) {
+    synthetic::Gaussian gaussian(20261128 + i);
+    values.emplace_back();
+    for (int r = 0; r < 5; ++r)
+      values.back().push_back(static_cast<double>(i * i + 1) * gaussian());
+  }
+  const SweepCurve by_realizations(strengths, values, Streams::independent);
+  const SweepCurve by_errors(strengths, by_realizations.y(), by_realizations.error());
+  CHECK(by_errors.p_of_equal_scatter() ==
+        Approx(by_realizations.p_of_equal_scatter()).epsilon(1e-9));
+  const Table table = sweep_table("sweep/sigma", {"gamma", "1", "lift"},
+                                  {"sigma", "1", "deviation", ""}, by_errors);
+  REQUIRE(by_errors.p_of_equal_scatter() < 0.05);
+  const auto note =
+      std::ranges::find(table.notes, "scatter", [](const auto& n) { return n.first; });
+  REQUIRE(note != table.notes.end());
+  CHECK(note->second.starts_with("the errors of the points differ"));
+}
+
 TEST_CASE("Points of few realizations have errors by the pooled variance beside their own") {
   const auto table_of = [](std::size_t realizations, Streams streams) {
     return sweep_table("sweep/phi", {"gamma", "1", "lift"}, {"phi", "1", "fraction", ""},
