@@ -68,12 +68,12 @@ double alternating_rho(double sum, std::size_t last) {
 /// each tap once.
 std::vector<double> with_weighted_sum(double rho, std::span<const double> weights) {
   std::vector<double> found(weights.begin(), weights.end());
-  double before = 0, after = 0;
+  double forward = 0, backward = 0;
   for (std::size_t i = 0, n = weights.size(); i < n; ++i) {
-    found[i] += before;
-    before = rho * (before + weights[i]);
-    found[n - 1 - i] += after;
-    after = rho * (after + weights[n - 1 - i]);
+    found[i] += forward;
+    forward = rho * (forward + weights[i]);
+    found[n - 1 - i] += backward;
+    backward = rho * (backward + weights[n - 1 - i]);
   }
   return found;
 }
@@ -206,7 +206,7 @@ AutocorrelationTime Autocorrelation::lower_bound(const Sum& sum) const {
 /// An AR(1) process, and by how much its expected sum grows with its time.
 struct Autocorrelation::Process {
   double time = 0, error = 0;
-  double gain = 0, scatter = 0;  // of the sum
+  double gain = 0, scatter = 0;  // those of the sum
 };
 
 std::optional<Autocorrelation::Process> Autocorrelation::process_of(const Sum& sum) const {

@@ -177,8 +177,8 @@ double SpectrumAverage::gaussian_error(std::span<const double> log_density,
   const Points points = in_band(slope_bins_.frequency, log_density, band);
   const Eigen::Map<const Eigen::ArrayXd> x(points.x.data(),
                                            static_cast<Eigen::Index>(points.x.size()));
-  const Eigen::ArrayXd apart = x - x.mean();
-  const Eigen::VectorXd weights = (apart / apart.square().sum()).matrix();
+  const Eigen::ArrayXd deviations = x - x.mean();
+  const Eigen::VectorXd weights = (deviations / deviations.square().sum()).matrix();
   Eigen::MatrixXd of_logarithms =
       slope_covariances_(points.bin, points.bin) / static_cast<double>(slope_densities_.size());
   for (Eigen::Index b = 0; b < of_logarithms.rows(); ++b) {

@@ -86,7 +86,7 @@ class SpectrumAverage {
   /// it would bend the end of the spectrum down.
   FrequencyBins slope_bins_;
   std::vector<double> relative_errors_, slope_errors_;            // [n_bins], of one realization
-  Eigen::MatrixXd slope_covariances_;                             // of slope_bins_, likewise
+  Eigen::MatrixXd slope_covariances_;                             // those of slope_bins_
   std::vector<std::vector<double>> densities_, slope_densities_;  // [n_realizations][n_bins]
 };
 

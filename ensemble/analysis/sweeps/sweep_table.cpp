@@ -123,17 +123,17 @@ Errors numbers(const std::vector<ErrorOf>& errors) {
 // The assumption of pooling.
 void add_scatter(const SweepCurve& curve, Table& table) {
   const double p = curve.p_of_equal_scatter();
-  const bool each = curve.has_realizations();
+  const bool has_realizations = curve.has_realizations();
   add_value("pooled_sigma_p", p, "1",
-            each ? "p-value of realizations scattering alike at all points"
-                 : "p-value of equal errors at all points",
+            has_realizations ? "p-value of realizations scattering alike at all points"
+                             : "p-value of equal errors at all points",
             table, "Bartlett 1937, doi:10.1098/rspa.1937.0109");
   if (!(p < significance_level) || !curve.pools()) return;
   table.notes.emplace_back(
       "scatter", finite_text("{} ({}): errors from the pooled variance are too small where {} most",
-                             each ? "realizations do not scatter alike at all points"
-                                  : "the errors of the points differ",
-                             p_text(p), each ? "they scatter" : "values scatter"));
+                             has_realizations ? "realizations do not scatter alike at all points"
+                                              : "the errors of the points differ",
+                             p_text(p), has_realizations ? "they scatter" : "values scatter"));
 }
 
 }  // namespace

@@ -162,7 +162,8 @@ TEST_CASE("White noise has slope 0 in segments of any length, and is not called 
 }
 
 TEST_CASE("AR(1) in one segment is called other at the level of the test", "[statistics]") {
-  // As long as the taps, and with so many realizations that a small bias of the memory would show.
+  // The segment is as long as the taps. With so many realizations a small bias of the memory would
+  // show.
   constexpr std::size_t ensembles = 60, realizations = 20;
   for (const Taper window : {Taper::hann, Taper::boxcar}) {
     for (const auto& [taps, time] : {std::pair{100, 9.5}, std::pair{600, 60.0}}) {
