@@ -252,6 +252,50 @@ class Words(Refused):
         self.assertTrue(done.stderr.replace("\n", "").replace("\t", "").isprintable())
 
 
+class Order(Refused):
+    """Lists of values before and behind the files."""
+
+    def test_a_list_before_a_file_does_not_take_the_file(self):
+        self.results()
+        shutil.copy(self.folder / "tiny.h5", self.folder / "plain")
+        shutil.copy(self.folder / "tiny.h5", self.folder / "other.h5")
+        self.write(CURVE, "curve.csv")
+        of_results = ("--observable", "mean_height", "--no-store")
+        for file in ("tiny.h5", "plain"):
+            for arguments in (["fit", "--model", "kww", file, *of_results],
+                              ["fit", "--model=kww", file, *of_results],
+                              ["fit", "--model", "kww", "inverse_log", file, *of_results],
+                              ["export", "--tap", 0, file, "--format", "extxyz", "--force"],
+                              ["export", "--tap", 0, 4, file, "--format", "extxyz", "--force"],
+                              ["structure", "--part", "profile", "layers", file, "--tap", 0, 4, "--no-store"],
+                              ["structure", "--tap", 0, file, "--part", "profile", "--no-store"],
+                              ["analyse", "--observable", "mean_height", file, "steady", "--no-store"],
+                              ["analyse", "--observable", "mean_height", "sweeps", file, "--last", 33, "steady",
+                               "--no-store"],
+                              ["analyse", "--no-store", "--observable", "mean_height", file, "other.h5", "steady"],
+                              ["analyse", "--lags", 1, 3, file, "ageing", *of_results],
+                              ["analyse", "--lags", 1, 3, "--", file, "ageing", *of_results],
+                              ["analyse", file, "ageing", *of_results, "--lags", 1, 3, "--waiting-times", 0, 9]):
+                with self.subTest(arguments=arguments):
+                    self.jostle(*arguments)
+        for arguments in (["--fix", "rho_inf=0.6", "tau=2", "curve.csv"],
+                          ["curve.csv", "--fix", "rho_inf=0.6", "tau=2"],
+                          ["--fix", "rho_inf=0.6", "tau=2", "--", "curve.csv"]):
+            fit = self.jostle("fit", "--model", "kww", *arguments).stdout
+            self.assertRegex(fit, "tau +2 .*fixed")
+
+    def test_a_list_that_may_hold_the_file_is_named(self):
+        self.results()
+        for arguments in (["--model", "kww", "gone"], ["--model", "kww", "inverse_log", "gone"]):
+            self.refused("fit", *arguments, "--observable", "mean_height",
+                         answer=f"no file is given, unless it is in {' '.join(arguments)}: put the file first")
+            self.refused("fit", *arguments, code=BROKEN, answer="gone: cannot open")
+        self.refused("analyse", "--observable", "mean_height", "gone", "steady",
+                     answer="gone is neither a file nor an analysis")
+        self.refused("fit", "--model", "kww,inverse_log", "--observable", "mean_height", answer="input is required")
+        self.refused("structure", "--tap", 0, -1, "tiny.h5", answer="--tap: -1 is not a whole number")
+
+
 class Once(Refused):
     def test_the_same_run_given_twice_counts_once(self):
         self.results()
