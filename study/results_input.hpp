@@ -41,8 +41,11 @@ void require_different(std::span<const std::string> paths);
 /// Rejects copies of a file, which hold one run.
 void require_different_runs(std::span<const ResultsFile> files);
 
-/// The sweep points that `wanted` names, by number or as "pointer=value"; all if it is empty.
-/// Throws BadArgument with the list of points.
+/// The sweep points that `wanted` names, by number ("2", "number=2"), label, value ("0.05") or as
+/// "pointer=value"; all if it is empty. Throws BadArgument with the list of points, and where a
+/// number is also a value or label of another point.
 std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted);
+/// The only sweep point that `wanted` names; the first if it is empty. Throws BadArgument.
+std::uint32_t chosen_point(const Study& study, const std::string& wanted);
 
 }  // namespace jostle::inline study

@@ -61,24 +61,17 @@ struct Wanted {
   std::string suffix;  // distinguishes the default name from those of other packings of the file
 };
 
-/// The first without a choice.
-std::uint32_t one_point(const Study& study, const std::string& wanted) {
-  if (wanted.empty()) return 0;
-  const std::vector<std::uint32_t> chosen = chosen_points(study, wanted);
-  if (chosen.size() == 1) return chosen.front();
-  throw BadInput(fmt::format(
-      "--sweep-point {}: points {} have it, and packings of one are exported: choose by number",
-      wanted, fmt::join(chosen, ", ")));
-}
-
 Wanted wanted(const ExportArguments& arguments) {
   const KeptTaps taps = tap_choice(arguments.taps);
   const std::string& input = arguments.input;
   if (is_results_file(input)) {
     const ResultsFile file = open_to_read(input, arguments.live);
-    const RealizationId id{one_point(file.study(), arguments.point), arguments.realization};
+    const RealizationId id{chosen_point(file.study(), arguments.point), arguments.realization};
+    const std::string& label = file.study().points.at(id.point).label;
     Wanted found{kept_frames(file, id, taps),
-                 fmt::format("sweep point {}, realization {}, tap", id.point, id.realization), ""};
+                 fmt::format("sweep point {}{}, realization {}, tap", id.point,
+                             label.empty() ? "" : fmt::format(" ({})", label), id.realization),
+                 ""};
     if (file.study().points.size() > 1) found.suffix += fmt::format("_point{}", id.point);
     if (arguments.realization_given) found.suffix += fmt::format("_realization{}", id.realization);
     return found;
@@ -176,7 +169,7 @@ void add_export(Command& app, int& code) {
                   ".xyz, .dump, .vtp or .h5md, in the current folder)")
       .file_to_write();
   command.add_option("--sweep-point", a.point,
-                     "Its number, or NAME=VALUE of the sweep (default: the first)");
+                     "Sweep point: its number, VALUE or NAME=VALUE (default: the first)");
   const Option realization =
       command.add_option("--realization", a.realization, "Its number (default: 0)");
   command
