@@ -10,6 +10,7 @@
 #include "cli/files/live_input.hpp"
 #include "cli/files/output_file.hpp"
 #include "cli/files/waiting.hpp"
+#include "cli/options/values.hpp"
 #include "cli/tables/text_table.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
@@ -19,7 +20,6 @@
 #include "results/file/results_file.hpp"
 #include "results/run/live_run.hpp"
 #include "study/bad_input.hpp"
-#include "study/number_text.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -38,22 +38,6 @@ struct ExportArguments {
   Patience patience;  // with who works on the file that is written
 };
 
-KeptTaps tap_choice(const std::vector<std::string>& words) {
-  KeptTaps choice;
-  for (const std::string& word : words) {
-    const auto tap = read_whole_number(word);
-    if (word == "all") {
-      choice.all = true;
-    } else if (tap) {
-      choice.taps.push_back(*tap);
-    } else {
-      throw BadInput(
-          fmt::format("--tap {}: neither a number nor \"all\"; several: --tap 0,10,100", word));
-    }
-  }
-  return choice;
-}
-
 /// Packings, and what they are called.
 struct Wanted {
   std::vector<ExportedFrame> frames;
@@ -62,7 +46,7 @@ struct Wanted {
 };
 
 Wanted wanted(const ExportArguments& arguments) {
-  const KeptTaps taps = tap_choice(arguments.taps);
+  const KeptTaps taps = kept_taps("--tap", arguments.taps);
   const std::string& input = arguments.input;
   if (is_results_file(input)) {
     const ResultsFile file = open_to_read(input, arguments.live);

@@ -190,6 +190,10 @@ std::vector<FitSource> read_sources(const FitArguments& arguments) {
   if (arguments.observable.empty()) {
     throw BadInput("a results file needs --observable NAME; jostle info lists them");
   }
+  if (arguments.observable.find(',') != std::string::npos) {
+    throw BadInput(fmt::format("--observable {}: a command fits one observable; run it for each",
+                               arguments.observable));
+  }
   // Tap 0 is the start: a law of taps begins with the first.
   const FitRange range = read_range("--range", arguments.range.empty() ? "1:" : arguments.range);
   const ResultsFile file = open_to_read(arguments.input, arguments.live);
@@ -337,7 +341,8 @@ void add_fit(Command& app, int& code) {
   command.add_option(
       "--range", a.range,
       "Range of t to fit, FIRST:LAST; either may be omitted (default: results from tap 1)");
-  command.add_option("--fix", a.fixed, "Fixed value of a parameter, NAME=NUMBER");
+  command.add_option("--fix", a.fixed, "Fixed values of parameters, NAME=NUMBER,...")
+      .separated_by(',');
   command.add_flag("--realizations", a.realizations,
                    "The text file has a column t and one column of X per realization, two or more");
   const Option gaps =

@@ -293,7 +293,29 @@ class Order(Refused):
         self.refused("analyse", "--observable", "mean_height", "gone", "steady",
                      answer="gone is neither a file nor an analysis")
         self.refused("fit", "--model", "kww,inverse_log", "--observable", "mean_height", answer="input is required")
-        self.refused("structure", "--tap", 0, -1, "tiny.h5", answer="--tap: -1 is not a whole number")
+        self.refused("structure", "--tap", 0, -1, "tiny.h5", answer="--tap -1: neither a number nor")
+
+    def test_values_after_commas_blanks_and_in_turn_are_one_list(self):
+        self.results()
+        self.write(CURVE, "curve.csv")
+        for command, name, values in (
+                (["fit", "curve.csv", "--model", "kww"], "--fix", ("rho_inf=0.6", "tau=2")),
+                (["fit", "curve.csv", "--law", "a + b/t", "--range", "1:"], "--start", ("a=1", "b=1")),
+                (["analyse", "tiny.h5", "steady", "--no-store"], "--observable", ("mean_height", "sweeps")),
+                (["analyse", "tiny.h5", "ageing", "--no-store", "--observable", "mean_height"], "--lags", (1, 3)),
+                (["structure", "tiny.h5", "--no-store", "--tap", "all"], "--part", ("profile", "layers")),
+                (["structure", "tiny.h5", "--no-store", "--part", "profile"], "--tap", (0, 4))):
+            with self.subTest(command=command, name=name):
+                told = [self.jostle(*command, *words).stdout
+                        for words in ((name, ",".join(map(str, values))), (name, *values),
+                                      [word for value in values for word in (name, value)])]
+                self.assertEqual(told, told[:1] * 3)
+                self.assertNotEqual(told[0], self.jostle(*command, name, values[0], expect=None).stdout)
+        self.assertEqual(*(self.jostle("structure", "tiny.h5", "--no-store", *taps).stdout
+                           for taps in ((), ("--tap", "all"))))
+        self.refused("fit", "tiny.h5", "--observable", "mean_height,sweeps",
+                     answer="--observable mean_height,sweeps: a command fits one observable; run it for each")
+        self.refused("structure", "tiny.h5", "--tap", "0,x", answer='--tap x: neither a number nor "all"')
 
 
 class Once(Refused):
