@@ -43,6 +43,13 @@ SpectrumSettings spectrum_settings(const AnalyseArguments& arguments) {
                                                       : Detrending::linear;
   if (!arguments.band.empty()) {
     const FitRange range = read_range("--band", arguments.band);
+    const auto is_frequency = [](double end) {
+      return !std::isfinite(end) || (end >= 0 && end <= 0.5);
+    };
+    if (!is_frequency(range.first) || !is_frequency(range.last)) {
+      throw BadInput(fmt::format(
+          "--band {}: frequencies of a value per tap are from 0 to 0.5 per tap", arguments.band));
+    }
     settings.band = Band{std::max(range.first, 0.0), std::min(range.last, 0.5)};
     if (!(settings.band->lowest < settings.band->highest)) {
       throw BadInput(fmt::format("--band {}: the lower frequency first, between 0 and 0.5 per tap",

@@ -10,9 +10,9 @@
 #include "cli/files/live_input.hpp"
 #include "cli/files/output_file.hpp"
 #include "cli/files/waiting.hpp"
+#include "cli/options/fit_arguments.hpp"
 #include "cli/options/values.hpp"
 #include "cli/reports/fit_output.hpp"
-#include "cli/reports/measured_output.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "config/json/json_text.hpp"
@@ -29,25 +29,6 @@
 namespace jostle::inline cli {
 
 namespace {
-
-struct FitArguments {
-  std::string input, observable, point, range, csv;
-  std::vector<std::string> models, fixed, start, bounds;  // start, bounds: for an own law
-  OwnLaw law;
-  std::string resample = "none";
-  std::uint32_t count = 1000;
-  std::uint64_t seed = 1;
-  int threads = 0;
-  bool json = false, force = false, not_stored = false;
-  MeasuredOutput measured;  // curves of a text file
-  Layout layout;
-  bool realizations = false;  // columns of a curve file
-  std::string gaps = "use-others";
-  bool gaps_asked_for = false, independent = false;
-  Live live = Live::no;
-  Patience patience;
-  bool resampling_asked_for = false;
-};
 
 std::vector<std::string> model_names() {
   std::vector<std::string> names{"all"};
@@ -118,43 +99,6 @@ std::vector<std::unique_ptr<Model>> chosen_models(const FitArguments& arguments)
       if (std::ranges::find(models, model->name(), &Model::name) == models.end())
         models.push_back(std::move(model));
   return models;
-}
-
-/// Options that have no sense with a results file.
-void refuse_options_of_text(const FitArguments& arguments) {
-  if (arguments.realizations || arguments.gaps_asked_for) {
-    throw BadInput(fmt::format(
-        "{} applies only to the columns of a text file; a results file stores its own realizations",
-        arguments.realizations ? "--realizations" : "--gaps"));
-  }
-  if (arguments.independent) {
-    throw BadInput(
-        "--independent applies only to rows of a text file; taps of a run are correlated");
-  }
-  if (arguments.measured.is_wanted()) {
-    throw BadInput(
-        fmt::format("--figures and --page apply only to a measured curve; jostle report {} draws "
-                    "the stored fits of a run",
-                    arguments.input));
-  }
-}
-
-/// Options that have no sense with a text file, or with this one.
-void refuse_options_of_results(const FitArguments& arguments) {
-  if (!arguments.observable.empty() || !arguments.point.empty()) {
-    throw BadInput(fmt::format("{}: not a results file, so without observables and sweep points",
-                               arguments.input));
-  }
-  if (arguments.resampling_asked_for && !arguments.realizations)
-    throw BadInput(fmt::format("{}: --resample requires --realizations", arguments.input));
-  if (arguments.live == Live::yes)
-    throw BadInput(fmt::format("{}: --live applies only to results files", arguments.input));
-  if (arguments.gaps_asked_for && !arguments.realizations) {
-    throw BadInput("--gaps applies only to columns of realizations: add --realizations");
-  }
-  if (arguments.independent && arguments.realizations) {
-    throw BadInput("--independent applies only to a single curve: omit it with --realizations");
-  }
 }
 
 FitSource measured_source(const FitArguments& arguments) {

@@ -150,6 +150,15 @@ class Numbers(Refused):
                     done = self.jostle(*arguments, f"{option}={text}", expect=BAD_INPUT)
                     self.assertTrue(done.stderr + done.stdout)
 
+    def test_a_band_has_frequencies_of_a_value_per_tap(self):
+        self.results()
+        spectrum = ("analyse", "tiny.h5", "spectrum", "--observable", "mean_height", "--no-store")
+        for band in ("0.1:0.9", "-0.1:0.4", "-2:-1", "0.6:0.9", "0.1:1e300"):
+            self.refused(*spectrum, f"--band={band}", answer=f"--band {band}: frequencies of a value per tap are from 0")
+        told = [self.jostle(*spectrum, "--band", band).stdout for band in ("0.05:0.5", "0.05:")]
+        self.assertEqual(told[0], told[1])
+        self.jostle(*spectrum, "--band", ":0.4")
+
     def test_waiting_times_are_of_the_run_and_once(self):
         self.results()
         ageing = ("analyse", "tiny.h5", "ageing", "--observable", "mean_height")
@@ -224,6 +233,10 @@ class Words(Refused):
         self.write("", "packing.xyz")
         for command, file in (("fit", "curve.csv"), ("structure", "packing.xyz")):
             self.refused(command, file, "--live", answer=f"{file}: --live applies only to results files")
+        self.refused("fit", "curve.csv", "--no-store", answer="curve.csv: --no-store applies only to results files")
+        self.write(TAPPED)
+        self.refused("cost", "scene.json", "--replicates", 2, "--budget", "1m",
+                     answer="--budget and --replicates exclude each other")
         self.jostle("fit", "curve.csv", "--model", "kww", "--resample", "none")
         self.refused("fit", "curve.csv", "--fix", "tau=1", "--fix", "tau=2",
                      answer="tau is fixed already")
