@@ -11,6 +11,7 @@
 
 #include "config/json/suggestion.hpp"
 #include "config/sweep.hpp"
+#include "results/disk/error.hpp"
 #include "results/disk/publish.hpp"
 #include "results/disk/seal.hpp"
 #include "results/run/live_run.hpp"
@@ -124,6 +125,13 @@ bool is_results_file(const std::string& path) {
   if (status.type() == fs::file_type::not_found) fail_on_disk(path, "open", ENOENT);
   if (!fs::is_regular_file(status)) return false;  // and nothing is taken out of a pipe
   return is_hdf5_file(path);
+}
+
+void reject_input(const std::string& path, const std::string& reason) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored))
+    throw ResultsError(path, "it is a folder, not a file: name a file in it");
+  throw ResultsError(path, reason);
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {

@@ -14,6 +14,9 @@ namespace jostle::inline study {
 /// By its first bytes. Throws ResultsError where there is no such file.
 bool is_results_file(const std::string& path);
 
+/// Throws ResultsError for an input that a command does not read: a folder, or else for `reason`.
+[[noreturn]] void reject_input(const std::string& path, const std::string& reason);
+
 /// True if two names refer to one file, existing or not.
 bool is_same_file(const std::string& a, const std::string& b);
 

@@ -60,13 +60,12 @@ Wanted wanted(const ExportArguments& arguments) {
     if (arguments.realization_given) found.suffix += fmt::format("_realization{}", id.realization);
     return found;
   }
+  if (!input.ends_with(".xyz") && !input.ends_with(".extxyz")) {
+    reject_input(input, "neither a results file nor extended XYZ (.xyz, .extxyz)");
+  }
   if (!arguments.point.empty() || arguments.realization_given || arguments.live == Live::yes) {
     throw BadInput(fmt::format(
-        "{}: not a results file: --sweep-point, --realization and --live mean nothing", input));
-  }
-  if (!input.ends_with(".xyz") && !input.ends_with(".extxyz")) {
-    throw BadInput(
-        fmt::format("{}: neither a results file nor extended XYZ (.xyz, .extxyz)", input));
+        "{}: --sweep-point, --realization and --live apply only to results files", input));
   }
   return {kept_frames(input, taps), fmt::format("{}, frame", input), ""};
 }
@@ -112,7 +111,7 @@ int export_packings(const ExportArguments& arguments) {
 /// The results themselves, with the checkpoints of a run in progress: a file for other programs.
 int export_results(const ExportArguments& arguments) {
   const std::string& input = arguments.input;
-  if (!is_results_file(input)) throw BadInput(fmt::format("{}: not a results file", input));
+  if (!is_results_file(input)) reject_input(input, "not a results file");
   if (arguments.output.empty()) {
     throw BadInput("--format results: -o FILE: name the file to write");
   }

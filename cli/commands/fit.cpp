@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -129,7 +130,12 @@ FitSource measured_source(const FitArguments& arguments) {
 }
 
 std::vector<FitSource> read_sources(const FitArguments& arguments) {
-  if (!is_results_file(arguments.input)) return {measured_source(arguments)};
+  const std::string& input = arguments.input;
+  if (!is_results_file(input)) {
+    if (input.ends_with(".h5") || std::filesystem::is_directory(input))
+      reject_input(input, "not a results file");
+    return {measured_source(arguments)};
+  }
   refuse_options_of_text(arguments);
   if (arguments.observable.empty()) {
     throw BadInput("a results file needs --observable NAME; jostle info lists them");

@@ -95,8 +95,7 @@ int measure_structure(const StructureArguments& arguments) {
           "one results file, or extended XYZ files that are realizations of one ensemble");
     }
     if (!results && !input.ends_with(".xyz") && !input.ends_with(".extxyz")) {
-      throw BadInput(
-          fmt::format("{}: neither a results file nor extended XYZ (.xyz, .extxyz)", input));
+      reject_input(input, "neither a results file nor extended XYZ (.xyz, .extxyz)");
     }
   }
   if (!results && arguments.output.live == Live::yes)

@@ -26,8 +26,9 @@ void refuse_options_of_text(const FitArguments& arguments) {
 
 void refuse_options_of_results(const FitArguments& arguments) {
   if (!arguments.observable.empty() || !arguments.point.empty()) {
-    throw BadInput(fmt::format("{}: not a results file, so without observables and sweep points",
-                               arguments.input));
+    throw BadInput(fmt::format(
+        "{}: not a results file, but a text file, which has one curve: leave {} out",
+        arguments.input, arguments.observable.empty() ? "--sweep-point" : "--observable"));
   }
   if (arguments.resampling_asked_for && !arguments.realizations)
     throw BadInput(fmt::format("{}: --resample requires --realizations", arguments.input));

@@ -401,6 +401,35 @@ class Doubtful(Case):
                 self.assertNotIn("\nwarnings\n", text)
 
 
+class Kinds(Refused):
+    """Paths that are no results: one exit code for all commands."""
+
+    commands = (["info"], ["info", "--digest"], ["report"], ["merge", "-o", "all.h5"], ["structure"],
+                ["export", "--format", "vtp"], ["export", "--format", "vtp", "--sweep-point", "0"],
+                ["export", "--format", "results", "-o", "copy.h5"])
+
+    def test_a_folder_and_a_file_of_another_kind_end_every_command_alike(self):
+        (self.folder / "folder").mkdir()
+        (self.folder / "folder.h5").mkdir()
+        self.write("{}", "age.json")
+        self.write("no results", "text.h5")
+        before = self.files()
+        for path in ("folder", "folder/", ".", "folder.h5", "age.json", "text.h5"):
+            of_folder = path not in ("age.json", "text.h5")
+            for command in self.commands:
+                if command[0] != "merge" or not of_folder:  # a folder of shards
+                    self.refused(*command, path, code=BROKEN, answer="folder" if of_folder else path)
+            self.refused("analyse", path, *STEADY, code=BROKEN, answer=path)
+            self.refused("analyse", *STEADY[1:], path, "steady", code=BROKEN, answer=path)
+            if path != "age.json":  # a text without columns
+                self.refused("fit", path, *STEADY[1:], code=BROKEN, answer=path)
+                self.refused("fit", path, code=BROKEN, answer=path)
+        self.refused("status", "age.json", code=BROKEN, answer="age.json: not an HDF5 file")
+        self.refused("fit", "age.json", answer="age.json: no column is named as t")
+        self.refused("fit", "folder", *STEADY[1:], code=BROKEN, answer="it is a folder, not a file: name a file in it")
+        self.assertEqual(self.files(), before)
+
+
 class Streams(Refused):
     """Errors go to standard error, and standard output stays empty."""
 

@@ -176,7 +176,7 @@ class Export(Case):
                 self.assertIn(answer, self.jostle(*command, *arguments, expect=BAD_INPUT).stderr)
                 self.assertEqual(self.files(), before)
         self.assertIn("neither a results file", self.jostle("export", "scene.json", "--format",
-                                                            "vtp", expect=BAD_INPUT).stderr)
+                                                            "vtp", expect=BROKEN).stderr)
 
     def test_a_file_without_positions_says_so(self):
         self.write(changed(TINY, name="bare", snapshots={"taps": [0, 4], "keep": ["coordination"]}))
