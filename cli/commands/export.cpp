@@ -172,13 +172,10 @@ void add_export(Command& app, int& code) {
       "  jostle export quickstart.h5 --format h5md --tap all    for MDAnalysis\n"
       "  jostle export quickstart.h5 --format results --live -o so_far.h5\n"
       "\n"
-      "Every sphere with its radius and coordination (centres within 1.05 times the sum of the "
-      "two\n"
-      "radii). Equal spheres also have the volume of their Voronoi cell, q6 and crystal "
-      "structure,\n"
-      "spheres of a mixture their kind and mass. A scene can start from the extended XYZ: the "
-      "same\n"
-      "bits.");
+      "Every sphere with its radius, coordination (centres within 1.05 times the sum of the\n"
+      "two radii) and the volume of its Voronoi cell, radical in a mixture. Equal spheres\n"
+      "also have q6 and crystal structure, spheres of a mixture their kind and mass. A scene\n"
+      "can start from the extended XYZ: the same bits.");
   command.run([arguments, realization, &code] {
     arguments->realization_given = realization.count() > 0;
     code =

@@ -186,6 +186,12 @@ class Export(Case):
 
 
 class SweepPoints(Case):
+    def test_the_help_gives_the_forms_of_a_sweep_point_and_the_columns_of_mixtures(self):
+        for command in ("fit", "analyse", "structure", "cost", "report", "export"):
+            text = " ".join(self.jostle(command, "--help", environment=UNFOLDED).stdout.split())
+            self.assertRegex(text, r"--sweep-point TEXT [^-]*number, VALUE or NAME=VALUE", command)
+        self.assertIn("the volume of its Voronoi cell, radical in a mixture. Equal spheres also have q6", text)
+
     def points(self, name, wanted):
         """Sweep points that fit finds."""
         told = self.jostle("fit", name, "--observable", "mean_height", "--model", "kww", "--json", "--no-store",
