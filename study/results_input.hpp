@@ -14,6 +14,9 @@ namespace jostle::inline study {
 /// By its first bytes. Throws ResultsError where there is no such file.
 bool is_results_file(const std::string& path);
 
+/// Throws ResultsError for an input that a command does not read: a folder, or else for `reason`.
+[[noreturn]] void reject_input(const std::string& path, const std::string& reason);
+
 /// True if two names refer to one file, existing or not.
 bool is_same_file(const std::string& a, const std::string& b);
 
@@ -41,8 +44,11 @@ void require_different(std::span<const std::string> paths);
 /// Rejects copies of a file, which hold one run.
 void require_different_runs(std::span<const ResultsFile> files);
 
-/// The sweep points that `wanted` names, by number or as "pointer=value"; all if it is empty.
-/// Throws BadArgument with the list of points.
+/// The sweep points that `wanted` names, by number ("2", "number=2"), label, value ("0.05") or as
+/// "pointer=value"; all if it is empty. Throws BadArgument with the list of points, and where a
+/// number is also a value or label of another point.
 std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& wanted);
+/// The only sweep point that `wanted` names; the first if it is empty. Throws BadArgument.
+std::uint32_t chosen_point(const Study& study, const std::string& wanted);
 
 }  // namespace jostle::inline study

@@ -43,6 +43,13 @@ SpectrumSettings spectrum_settings(const AnalyseArguments& arguments) {
                                                       : Detrending::linear;
   if (!arguments.band.empty()) {
     const FitRange range = read_range("--band", arguments.band);
+    const auto is_frequency = [](double end) {
+      return !std::isfinite(end) || (end >= 0 && end <= 0.5);
+    };
+    if (!is_frequency(range.first) || !is_frequency(range.last)) {
+      throw BadInput(fmt::format(
+          "--band {}: frequencies of a value per tap are from 0 to 0.5 per tap", arguments.band));
+    }
     settings.band = Band{std::max(range.first, 0.0), std::min(range.last, 0.5)};
     if (!(settings.band->lowest < settings.band->highest)) {
       throw BadInput(fmt::format("--band {}: the lower frequency first, between 0 and 0.5 per tap",
@@ -70,7 +77,7 @@ std::vector<AnalysisRequest<Settings>> requests(const AnalyseArguments& argument
 void require_files(const AnalyseArguments& arguments) {
   require_text_output("--csv", arguments.output.csv, arguments.inputs, arguments.output.force);
   for (const std::string& input : arguments.inputs) {
-    if (!is_results_file(input)) throw BadInput(fmt::format("{}: not a results file", input));
+    if (!is_results_file(input)) reject_input(input, "not a results file");
   }
   require_different(arguments.inputs);
 }
@@ -145,13 +152,16 @@ std::vector<std::uint64_t> ascending(const char* option, std::vector<std::uint64
 
 /// Describes the fault of a word that may name a file or a kind; nothing if it is a file.
 std::string file_or_kind_fault(const std::string& text) {
-  std::error_code unreadable;
-  if (std::filesystem::exists(text, unreadable) && !std::filesystem::is_directory(text, unreadable))
-    return {};
-  if (text.ends_with(".h5")) return {};  // is refused where it is opened
   const std::vector<std::string> kinds{"steady",   "spectrum", "ageing",  "hysteresis", "motion",
                                        "ordering", "sweep",    "volumes", "memory"};
-  if (std::ranges::find(kinds, text) != kinds.end())
+  const bool is_kind = std::ranges::find(kinds, text) != kinds.end();
+  std::error_code unreadable;
+  const std::filesystem::file_status status = std::filesystem::status(text, unreadable);
+  const bool is_folder = std::filesystem::is_directory(status);
+  // Rejected where it is opened: a folder, or a file that is missing or of another kind.
+  if (text.ends_with(".h5") || (is_folder && !is_kind)) return {};
+  if (std::filesystem::exists(status) && !is_folder) return {};
+  if (is_kind)
     return fmt::format("{0} is an analysis, and follows the files: jostle analyse FILE {0}", text);
   return fmt::format("{} is neither a file nor an analysis; the analyses are {}.{}", text,
                      joined(kinds, ", "), did_you_mean(text, kinds));

@@ -49,7 +49,9 @@ class AnalysisKinds {
       }
       run(given);
     });
-    add_option(kind, "--observable", arguments_->observables, "Columns of the results");
+    add_option(kind, "--observable", arguments_->observables,
+               "Columns of the results, separated by commas",
+               [](Option option) { option.separated_by(','); });
     return kind;
   }
 

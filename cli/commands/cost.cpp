@@ -120,8 +120,8 @@ int run_cost(const CostArguments& arguments) {
   }
 }
 
-void add_duration(Command& command, CostArguments& arguments) {
-  command.add_reader(
+Option add_duration(Command& command, CostArguments& arguments) {
+  return command.add_reader(
       "--budget",
       [&arguments](const std::string& text) {
         const auto duration = parse_duration(text);
@@ -144,11 +144,12 @@ void add_cost(Command& app, int& code) {
   command
       .add_option("--target", a.target, "Total error for which to recommend the cheapest settings")
       .positive_number();
-  add_duration(command, a);
-  command
-      .add_option("--replicates", a.replicates,
-                  "Number of replicates to run, instead of a time (reproducible)")
-      .limit(1, 1000000);
+  const Option budget = add_duration(command, a);
+  const Option replicates =
+      command
+          .add_option("--replicates", a.replicates,
+                      "Number of replicates to run, without --budget (reproducible)")
+          .limit(1, 1000000);
   command.add_option("--taps", a.taps, "Taps of the pilot (default: 10, or all of fewer)")
       .limit(1, 1000000000);
   command.add_option("--sweep-point", a.point,
@@ -174,7 +175,14 @@ void add_cost(Command& app, int& code) {
       "spheres, the other pour between walls. Discrete elements: rest, time step,\n"
       "stiffness, half the spheres. jostle report draws accuracy against time from\n"
       "the results; docs/explanation/accuracy.md describes it.");
-  command.run([arguments, &code] { code = run_cost(*arguments); });
+  command.run([=, &code] {
+    if (budget.count() > 0 && replicates.count() > 0) {
+      throw BadInput(
+          "--budget and --replicates exclude each other: a duration decides the number of "
+          "replicates, or the number is given");
+    }
+    code = run_cost(*arguments);
+  });
 }
 
 }  // namespace jostle::inline cli

@@ -10,6 +10,7 @@
 #include "cli/files/live_input.hpp"
 #include "cli/files/output_file.hpp"
 #include "cli/files/waiting.hpp"
+#include "cli/options/values.hpp"
 #include "cli/tables/text_table.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "ensemble/statistics/counted.hpp"
@@ -19,7 +20,6 @@
 #include "results/file/results_file.hpp"
 #include "results/run/live_run.hpp"
 #include "study/bad_input.hpp"
-#include "study/number_text.hpp"
 
 namespace jostle::inline cli {
 namespace {
@@ -38,22 +38,6 @@ struct ExportArguments {
   Patience patience;  // with who works on the file that is written
 };
 
-KeptTaps tap_choice(const std::vector<std::string>& words) {
-  KeptTaps choice;
-  for (const std::string& word : words) {
-    const auto tap = read_whole_number(word);
-    if (word == "all") {
-      choice.all = true;
-    } else if (tap) {
-      choice.taps.push_back(*tap);
-    } else {
-      throw BadInput(
-          fmt::format("--tap {}: neither a number nor \"all\"; several: --tap 0,10,100", word));
-    }
-  }
-  return choice;
-}
-
 /// Packings, and what they are called.
 struct Wanted {
   std::vector<ExportedFrame> frames;
@@ -61,35 +45,27 @@ struct Wanted {
   std::string suffix;  // distinguishes the default name from those of other packings of the file
 };
 
-/// The first without a choice.
-std::uint32_t one_point(const Study& study, const std::string& wanted) {
-  if (wanted.empty()) return 0;
-  const std::vector<std::uint32_t> chosen = chosen_points(study, wanted);
-  if (chosen.size() == 1) return chosen.front();
-  throw BadInput(fmt::format(
-      "--sweep-point {}: points {} have it, and packings of one are exported: choose by number",
-      wanted, fmt::join(chosen, ", ")));
-}
-
 Wanted wanted(const ExportArguments& arguments) {
-  const KeptTaps taps = tap_choice(arguments.taps);
+  const KeptTaps taps = kept_taps("--tap", arguments.taps);
   const std::string& input = arguments.input;
   if (is_results_file(input)) {
     const ResultsFile file = open_to_read(input, arguments.live);
-    const RealizationId id{one_point(file.study(), arguments.point), arguments.realization};
+    const RealizationId id{chosen_point(file.study(), arguments.point), arguments.realization};
+    const std::string& label = file.study().points.at(id.point).label;
     Wanted found{kept_frames(file, id, taps),
-                 fmt::format("sweep point {}, realization {}, tap", id.point, id.realization), ""};
+                 fmt::format("sweep point {}{}, realization {}, tap", id.point,
+                             label.empty() ? "" : fmt::format(" ({})", label), id.realization),
+                 ""};
     if (file.study().points.size() > 1) found.suffix += fmt::format("_point{}", id.point);
     if (arguments.realization_given) found.suffix += fmt::format("_realization{}", id.realization);
     return found;
   }
+  if (!input.ends_with(".xyz") && !input.ends_with(".extxyz")) {
+    reject_input(input, "neither a results file nor extended XYZ (.xyz, .extxyz)");
+  }
   if (!arguments.point.empty() || arguments.realization_given || arguments.live == Live::yes) {
     throw BadInput(fmt::format(
-        "{}: not a results file: --sweep-point, --realization and --live mean nothing", input));
-  }
-  if (!input.ends_with(".xyz") && !input.ends_with(".extxyz")) {
-    throw BadInput(
-        fmt::format("{}: neither a results file nor extended XYZ (.xyz, .extxyz)", input));
+        "{}: --sweep-point, --realization and --live apply only to results files", input));
   }
   return {kept_frames(input, taps), fmt::format("{}, frame", input), ""};
 }
@@ -135,7 +111,7 @@ int export_packings(const ExportArguments& arguments) {
 /// The results themselves, with the checkpoints of a run in progress: a file for other programs.
 int export_results(const ExportArguments& arguments) {
   const std::string& input = arguments.input;
-  if (!is_results_file(input)) throw BadInput(fmt::format("{}: not a results file", input));
+  if (!is_results_file(input)) reject_input(input, "not a results file");
   if (arguments.output.empty()) {
     throw BadInput("--format results: -o FILE: name the file to write");
   }
@@ -176,7 +152,7 @@ void add_export(Command& app, int& code) {
                   ".xyz, .dump, .vtp or .h5md, in the current folder)")
       .file_to_write();
   command.add_option("--sweep-point", a.point,
-                     "Its number, or NAME=VALUE of the sweep (default: the first)");
+                     "Sweep point: its number, VALUE or NAME=VALUE (default: the first)");
   const Option realization =
       command.add_option("--realization", a.realization, "Its number (default: 0)");
   command
@@ -196,13 +172,10 @@ void add_export(Command& app, int& code) {
       "  jostle export quickstart.h5 --format h5md --tap all    for MDAnalysis\n"
       "  jostle export quickstart.h5 --format results --live -o so_far.h5\n"
       "\n"
-      "Every sphere with its radius and coordination (centres within 1.05 times the sum of the "
-      "two\n"
-      "radii). Equal spheres also have the volume of their Voronoi cell, q6 and crystal "
-      "structure,\n"
-      "spheres of a mixture their kind and mass. A scene can start from the extended XYZ: the "
-      "same\n"
-      "bits.");
+      "Every sphere with its radius, coordination (centres within 1.05 times the sum of the\n"
+      "two radii) and the volume of its Voronoi cell, radical in a mixture. Equal spheres\n"
+      "also have q6 and crystal structure, spheres of a mixture their kind and mass. A scene\n"
+      "can start from the extended XYZ: the same bits.");
   command.run([arguments, realization, &code] {
     arguments->realization_given = realization.count() > 0;
     code =

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,9 +11,9 @@
 #include "cli/files/live_input.hpp"
 #include "cli/files/output_file.hpp"
 #include "cli/files/waiting.hpp"
+#include "cli/options/fit_arguments.hpp"
 #include "cli/options/values.hpp"
 #include "cli/reports/fit_output.hpp"
-#include "cli/reports/measured_output.hpp"
 #include "cli/terminal/screen.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "config/json/json_text.hpp"
@@ -29,25 +30,6 @@
 namespace jostle::inline cli {
 
 namespace {
-
-struct FitArguments {
-  std::string input, observable, point, range, csv;
-  std::vector<std::string> models, fixed, start, bounds;  // start, bounds: for an own law
-  OwnLaw law;
-  std::string resample = "none";
-  std::uint32_t count = 1000;
-  std::uint64_t seed = 1;
-  int threads = 0;
-  bool json = false, force = false, not_stored = false;
-  MeasuredOutput measured;  // curves of a text file
-  Layout layout;
-  bool realizations = false;  // columns of a curve file
-  std::string gaps = "use-others";
-  bool gaps_asked_for = false, independent = false;
-  Live live = Live::no;
-  Patience patience;
-  bool resampling_asked_for = false;
-};
 
 std::vector<std::string> model_names() {
   std::vector<std::string> names{"all"};
@@ -120,43 +102,6 @@ std::vector<std::unique_ptr<Model>> chosen_models(const FitArguments& arguments)
   return models;
 }
 
-/// Options that have no sense with a results file.
-void refuse_options_of_text(const FitArguments& arguments) {
-  if (arguments.realizations || arguments.gaps_asked_for) {
-    throw BadInput(fmt::format(
-        "{} applies only to the columns of a text file; a results file stores its own realizations",
-        arguments.realizations ? "--realizations" : "--gaps"));
-  }
-  if (arguments.independent) {
-    throw BadInput(
-        "--independent applies only to rows of a text file; taps of a run are correlated");
-  }
-  if (arguments.measured.is_wanted()) {
-    throw BadInput(
-        fmt::format("--figures and --page apply only to a measured curve; jostle report {} draws "
-                    "the stored fits of a run",
-                    arguments.input));
-  }
-}
-
-/// Options that have no sense with a text file, or with this one.
-void refuse_options_of_results(const FitArguments& arguments) {
-  if (!arguments.observable.empty() || !arguments.point.empty()) {
-    throw BadInput(fmt::format("{}: not a results file, so without observables and sweep points",
-                               arguments.input));
-  }
-  if (arguments.resampling_asked_for && !arguments.realizations)
-    throw BadInput(fmt::format("{}: --resample requires --realizations", arguments.input));
-  if (arguments.live == Live::yes)
-    throw BadInput(fmt::format("{}: --live applies only to results files", arguments.input));
-  if (arguments.gaps_asked_for && !arguments.realizations) {
-    throw BadInput("--gaps applies only to columns of realizations: add --realizations");
-  }
-  if (arguments.independent && arguments.realizations) {
-    throw BadInput("--independent applies only to a single curve: omit it with --realizations");
-  }
-}
-
 FitSource measured_source(const FitArguments& arguments) {
   refuse_options_of_results(arguments);
   const FitRange range = read_range("--range", arguments.range.empty() ? ":" : arguments.range);
@@ -185,10 +130,19 @@ FitSource measured_source(const FitArguments& arguments) {
 }
 
 std::vector<FitSource> read_sources(const FitArguments& arguments) {
-  if (!is_results_file(arguments.input)) return {measured_source(arguments)};
+  const std::string& input = arguments.input;
+  if (!is_results_file(input)) {
+    if (input.ends_with(".h5") || std::filesystem::is_directory(input))
+      reject_input(input, "not a results file");
+    return {measured_source(arguments)};
+  }
   refuse_options_of_text(arguments);
   if (arguments.observable.empty()) {
     throw BadInput("a results file needs --observable NAME; jostle info lists them");
+  }
+  if (arguments.observable.find(',') != std::string::npos) {
+    throw BadInput(fmt::format("--observable {}: a command fits one observable; run it for each",
+                               arguments.observable));
   }
   // Tap 0 is the start: a law of taps begins with the first.
   const FitRange range = read_range("--range", arguments.range.empty() ? "1:" : arguments.range);
@@ -337,7 +291,8 @@ void add_fit(Command& app, int& code) {
   command.add_option(
       "--range", a.range,
       "Range of t to fit, FIRST:LAST; either may be omitted (default: results from tap 1)");
-  command.add_option("--fix", a.fixed, "Fixed value of a parameter, NAME=NUMBER");
+  command.add_option("--fix", a.fixed, "Fixed values of parameters, NAME=NUMBER,...")
+      .separated_by(',');
   command.add_flag("--realizations", a.realizations,
                    "The text file has a column t and one column of X per realization, two or more");
   const Option gaps =

@@ -100,7 +100,7 @@ void add_report(Command& app, int& code) {
       .limit(1, 2)
       .needs(figures);
   command.add_option("--sweep-point", a.figures.sweep_point,
-                     "Figures of this one alone: its number, or NAME=VALUE of the sweep");
+                     "Figures of these sweep points alone: number, VALUE or NAME=VALUE");
   command
       .add_option(
           "--catalogue", a.catalogue,

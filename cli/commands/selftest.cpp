@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <stdexcept>
 
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/standard_streams.hpp"
 #include "results/disk/error.hpp"
 #include "results/disk/temporary_file.hpp"
-#include "study/bad_input.hpp"
 #include "study/running/self_checks.hpp"
 
 namespace jostle::inline cli {
@@ -42,7 +42,7 @@ ScratchFolder scratch_folder(const std::string& folder) {
   try {
     return ScratchFolder("selftest", folder);
   } catch (const ResultsError& error) {
-    throw BadInput(fmt::format("{}: name another with --folder", error.what()));
+    throw std::runtime_error(fmt::format("{}: name another with --folder", error.what()));
   }
 }
 

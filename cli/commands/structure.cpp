@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "cli/commands/commands.hpp"
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/live_input.hpp"
 #include "cli/files/output_file.hpp"
+#include "cli/options/values.hpp"
 #include "cli/terminal/shown_tables.hpp"
 #include "config/json/json_text.hpp"
 #include "config/json/suggestion.hpp"
@@ -23,8 +25,7 @@ namespace jostle::inline cli {
 namespace {
 
 struct StructureArguments {
-  std::vector<std::string> inputs, parts;
-  std::vector<std::uint64_t> taps;
+  std::vector<std::string> inputs, parts, taps;
   std::string point, settings;
   TableOutput output;
   int threads = 0;
@@ -69,6 +70,12 @@ StructureSettings wanted(const StructureArguments& arguments, StructureSettings 
   return with_parts(std::move(settings), parts);
 }
 
+/// None for all of them.
+std::vector<std::uint64_t> chosen_taps(const StructureArguments& arguments) {
+  KeptTaps taps = kept_taps("--tap", arguments.taps);
+  return taps.all ? std::vector<std::uint64_t>{} : std::move(taps.taps);
+}
+
 /// Inputs are kept.
 void require_output(const StructureArguments& arguments) {
   std::vector<std::string> read = arguments.inputs;
@@ -78,6 +85,7 @@ void require_output(const StructureArguments& arguments) {
 
 int measure_structure(const StructureArguments& arguments) {
   require_output(arguments);
+  const std::vector<std::uint64_t> taps = chosen_taps(arguments);
   const Provenance provenance = provenance_of_this_run("");
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   const bool results = is_results_file(arguments.inputs.front());
@@ -87,8 +95,7 @@ int measure_structure(const StructureArguments& arguments) {
           "one results file, or extended XYZ files that are realizations of one ensemble");
     }
     if (!results && !input.ends_with(".xyz") && !input.ends_with(".extxyz")) {
-      throw BadInput(
-          fmt::format("{}: neither a results file nor extended XYZ (.xyz, .extxyz)", input));
+      reject_input(input, "neither a results file nor extended XYZ (.xyz, .extxyz)");
     }
   }
   if (!results && arguments.output.live == Live::yes)
@@ -99,12 +106,12 @@ int measure_structure(const StructureArguments& arguments) {
   if (results) {
     const ResultsFile file = open_to_read(arguments.inputs.front(), arguments.output.live);
     tables = structure_of(file, chosen_points(file.study(), arguments.point),
-                          wanted(arguments, structure_asked_for(file)), arguments.taps, threads);
+                          wanted(arguments, structure_asked_for(file)), taps, threads);
   } else {
     if (!arguments.point.empty()) {
       throw BadInput("--sweep-point: extended XYZ files have no sweep points");
     }
-    tables = structure_of(arguments.inputs, wanted(arguments, {}), arguments.taps, threads);
+    tables = structure_of(arguments.inputs, wanted(arguments, {}), taps, threads);
   }
   ShownTables shown(arguments.output);
   shown.show(tables, "");
@@ -137,8 +144,8 @@ void add_structure(Command& app, int& code) {
       "Settings in the form of a scene's \"structure\": a JSON file, or the object itself");
   command
       .add_option("--tap", a.taps,
-                  "Taps with a packing (frames of extended XYZ, from 0), separated by commas "
-                  "(default: all)")
+                  "Taps with a packing (frames of extended XYZ, from 0), separated by commas, or "
+                  "all (default)")
       .separated_by(',');
   command.add_option("--sweep-point", a.point,
                      "Sweep point: its number, VALUE or NAME=VALUE (default: every point)");

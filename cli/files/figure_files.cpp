@@ -162,7 +162,7 @@ std::string write_figures(std::span<const ResultsFile> files, const FigureFolder
   write_all(folder, all.figures, all.inputs);
   std::string text = written_text(folder, all.figures.size());
   for (const std::string& line : all.left_out) text += line + "\n";
-  if (all.has_other_points) text += "--sweep-point draws another one.\n";
+  if (all.has_other_points) text += "--sweep-point draws others.\n";
   return text;
 }
 

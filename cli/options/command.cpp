@@ -71,6 +71,13 @@ std::string file_name_fault(const std::string& text) {
   return fmt::format("\"{}\" is no file's name", text);
 }
 
+/// An option takes one value each time it is given: with_separate_values() repeats it.
+template <class T>
+CLI::Option& with_single_values(CLI::Option& option) {
+  if (option.nonpositional() && option.get_items_expected_max() > 1) option.allow_extra_args(false);
+  return with_plain_numbers<T>(option);
+}
+
 // The parser has no place for what is offered: it is kept as the name of a check that finds no
 // fault. A later one counts.
 void note_offer(CLI::Option& option, const char* kind, const std::vector<std::string>& texts) {
@@ -173,12 +180,12 @@ Command Command::add_command(const std::string& name, const std::string& descrip
 
 template <class T>
 Option Command::add_option(const std::string& name, T& value, const std::string& description) {
-  return Option(with_plain_numbers<T>(*app_->add_option(name, value, description)));
+  return Option(with_single_values<T>(*app_->add_option(name, value, description)));
 }
 
 template <class T>
 Option Command::add_hidden_option(const std::string& name, T& value) {
-  return Option(with_plain_numbers<T>(*app_->add_option(name, value)->group(hidden_group)));
+  return Option(with_single_values<T>(*app_->add_option(name, value)->group(hidden_group)));
 }
 
 #define JOSTLE_OPTION_OF(T)                                                        \

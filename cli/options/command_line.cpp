@@ -68,21 +68,34 @@ std::string unknown_word(const CLI::App& app) {
   return {};
 }
 
-/// The command line as the parser takes it, the last word first and without the program: "--" is
-/// written out where files come before a subcommand, and a file's name is no list.
-std::vector<std::string> words_for_parser(const CLI::App& app, int argc, char** argv) {
-  std::vector<std::string> words(argv + 1, argv + argc);
+/// The command line as the parser takes it, the last word first and without the program: an option
+/// has one value, "--" is written out where files come before a subcommand, and a file's name is no
+/// list.
+SeparateValues words_for_parser(CLI::App& app, int argc, char** argv) {
+  SeparateValues line{{argv + 1, argv + argc}, ""};
   std::vector<std::string> kinds;
-  for (const CLI::App* command : app.get_subcommands({})) {
-    if (words.empty() || command->get_name() != words.front()) continue;
-    for (const CLI::App* kind : command->get_subcommands({})) kinds.push_back(kind->get_name());
+  for (CLI::App* command : app.get_subcommands({})) {
+    if (line.words.empty() || command->get_name() != line.words.front()) continue;
+    const CommandText text = text_of(*command);
+    for (const CommandText& kind : text.commands) kinds.push_back(kind.name);
+    line = with_separate_values(line.words, text);
   }
-  words = without_operand_mark(std::move(words), kinds);
+  line.words = without_operand_mark(std::move(line.words), kinds);
   std::error_code ignored;
-  for (std::string& word : words)
+  for (std::string& word : line.words)
     if (word.starts_with('[') && std::filesystem::exists(word, ignored)) word = operand(word);
-  std::ranges::reverse(words);
-  return words;
+  std::ranges::reverse(line.words);
+  return line;
+}
+
+/// For a command line without a file, in which a list may have taken it; empty for others.
+std::string file_in_list(const CLI::ParseError& error, const std::string& long_list) {
+  const bool is_of_file = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr &&
+                          !std::string(error.what()).starts_with('-');
+  if (!is_of_file || long_list.empty()) return {};
+  return fmt::format(
+      "no file is given, unless it is in {}: put the file first, or separate the values by commas",
+      long_list);
 }
 
 /// The help without hidden options.
@@ -117,12 +130,15 @@ void CommandLine::set_version(const std::string& text) {
 
 CommandLine::Outcome CommandLine::parse_and_run(int argc, char** argv) {
   refuse_negative_counts(*app_);
+  SeparateValues line = words_for_parser(*app_, argc, argv);
   try {
-    app_->parse(words_for_parser(*app_, argc, argv));
+    app_->parse(line.words);
     return {};
   } catch (const CLI::ParseError& error) {
     const std::string unknown = error.get_exit_code() == 0 ? "" : unknown_word(*app_);
     if (!unknown.empty()) throw BadInput(unknown);
+    const std::string taken = file_in_list(error, line.long_list);
+    if (!taken.empty()) throw BadInput(taken);
     std::ostringstream asked_for, fault;
     const bool refused = app_->exit(error, asked_for, fault) != 0;
     return {.asked_for = asked_for.str(), .fault = fault.str(), .refused = refused};

@@ -1,6 +1,10 @@
 #include "cli/options/command_words.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <system_error>
+#include <utility>
 
 namespace jostle::inline cli {
 namespace {
@@ -13,7 +17,92 @@ bool reads_as_list(const std::string& word) {
   return word.size() > 1 && word.front() == '[' && word.back() == ']';
 }
 
+const OptionText* option_named(const CommandText& command, const std::string& name) {
+  for (const OptionText& option : command.options)
+    if (std::ranges::find(option.names, name) != option.names.end()) return &option;
+  for (const CommandText& subcommand : command.commands)
+    if (const OptionText* option = option_named(subcommand, name)) return option;
+  return nullptr;
+}
+
+bool reads_as_option(const std::string& word) {
+  return word.size() > 1 && word.front() == '-' && std::isdigit(word[1]) == 0;
+}
+
+/// One pass over the words of a command line.
+class ValueSeparation {
+ public:
+  ValueSeparation(const std::vector<std::string>& words, const CommandText& command)
+      : words_(words), command_(command) {}
+
+  SeparateValues operator()() {
+    while (next_ < words_.size() && words_[next_] != "--") take_word();
+    found_.words.insert(found_.words.end(), words_.begin() + static_cast<std::ptrdiff_t>(next_),
+                        words_.end());
+    return std::move(found_);
+  }
+
+ private:
+  void take_word() {
+    const std::string& word = words_[next_];
+    found_.words.push_back(word);
+    const auto equals = word.find('=');
+    const OptionText* option = option_named(command_, word.substr(0, equals));
+    if (option == nullptr) {
+      const bool is_subcommand = ends_files(next_);
+      has_subcommand_ = has_subcommand_ || is_subcommand;
+      has_file_ = has_file_ || (next_ > 0 && !is_subcommand && !reads_as_option(word));
+    }
+    ++next_;
+    if (option == nullptr || option->value.empty()) return;
+    const bool has_value = equals != std::string::npos && equals + 1 < word.size();
+    if (!has_value && next_ < words_.size()) found_.words.push_back(words_[next_++]);
+    if (option->repeated) take_list(word.substr(0, equals));
+  }
+
+  void take_list(const std::string& name) {
+    std::string list = name + " " + found_.words.back();
+    const std::size_t first = next_;
+    for (; next_ < words_.size() && continues_list(); ++next_) {
+      found_.words.insert(found_.words.end(), {name, words_[next_]});
+      list += " " + words_[next_];
+    }
+    if (next_ > first && !has_file_) found_.long_list = list;
+  }
+
+  bool continues_list() const {
+    const std::string& word = words_[next_];
+    return !reads_as_option(word) && !ends_files(next_) && !is_file(word);
+  }
+
+  bool is_file(const std::string& word) const {
+    for (const OptionText& files : command_.positionals)
+      for (const std::string& suffix : files.offer.suffixes)
+        if (word.ends_with("." + suffix)) return true;
+    if (has_file_) return false;
+    std::error_code ignored;
+    return next_ + 1 == words_.size() || ends_files(next_ + 1) ||
+           std::filesystem::is_regular_file(word, ignored);
+  }
+
+  bool ends_files(std::size_t index) const {
+    return !has_subcommand_ && std::ranges::find(command_.commands, words_[index],
+                                                 &CommandText::name) != command_.commands.end();
+  }
+
+  const std::vector<std::string>& words_;
+  const CommandText& command_;
+  std::size_t next_ = 0;
+  bool has_file_ = false, has_subcommand_ = false;
+  SeparateValues found_;
+};
+
 }  // namespace
+
+SeparateValues with_separate_values(const std::vector<std::string>& words,
+                                    const CommandText& command) {
+  return ValueSeparation(words, command)();
+}
 
 std::string operand(const std::string& path) {
   return path.starts_with('-') || reads_as_list(path) ? "./" + path : path;

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/options/command_text.hpp"
+
 // Command lines that are printed for a person to run: what a word means must not depend on how the
 // files are called. Words behind "--" are operands, whatever they begin with.
 namespace jostle::inline cli {
@@ -21,5 +23,17 @@ void remove_flag(std::vector<std::string>& words, const std::string& flag);
 /// follows it up to the name of a subcommand is operands. `subcommands`: of the command `words[0]`.
 std::vector<std::string> without_operand_mark(std::vector<std::string> words,
                                               const std::vector<std::string>& subcommands);
+
+/// A command line in which every value of an option that takes several has the option's name before
+/// it: "--part a b x.h5" becomes "--part a --part b x.h5".
+struct SeparateValues {
+  std::vector<std::string> words;
+  std::string long_list;  // "--part a b", if words without commas follow it before any file
+};
+/// A list ends at an option, a subcommand or a file: a word with a suffix that the command offers
+/// for its files, and, as long as no file is given, an existing file or the last word. `words[0]`
+/// is the name of `command`.
+SeparateValues with_separate_values(const std::vector<std::string>& words,
+                                    const CommandText& command);
 
 }  // namespace jostle::inline cli

@@ -48,4 +48,20 @@ std::vector<NamedNumber> named_numbers(const std::string& option,
   return all;
 }
 
+KeptTaps kept_taps(const std::string& option, const std::vector<std::string>& words) {
+  KeptTaps choice;
+  for (const std::string& word : words) {
+    const auto tap = read_whole_number(word);
+    if (word == "all") {
+      choice.all = true;
+    } else if (tap) {
+      choice.taps.push_back(*tap);
+    } else {
+      throw BadInput(fmt::format("{0} {1}: neither a number nor \"all\"; several: {0} 0,10,100",
+                                 option, word));
+    }
+  }
+  return choice;
+}
+
 }  // namespace jostle::inline cli

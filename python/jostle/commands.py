@@ -289,6 +289,6 @@ def export(results: Results | Path, output: Path, *, format: str, point: int | N
     """Writes kept packings for other programs; format: "extxyz", "lammps", "vtp", "h5md". tap: None the
     last, "all", or some. Returns `output`."""
     call(["export", *_option("format", format), *_option("output", path_text(output, "output")),
-          *_options(sweep_point=point, realization=realization, tap=tap, live=_live(results, live),
-                    force=force, wait=wait)], _paths(results), program=program)
+          *_options(sweep_point=None if point is None else f"number={point}", realization=realization, tap=tap,
+                    live=_live(results, live), force=force, wait=wait)], _paths(results), program=program)
     return output

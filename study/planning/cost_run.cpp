@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t fewest_replicates = 2;  // an error needs two
 
 Scene scene_at_point(const LoadedScene& loaded, const std::string& wanted) {
-  const std::uint32_t point = wanted.empty() ? 0 : chosen_points(study_of(loaded), wanted).front();
+  const std::uint32_t point = chosen_point(study_of(loaded), wanted);
   Scene scene = loaded.points.at(point);
   if (total_taps(scene.protocol) == 0) {
     throw BadInput("/protocol: there is no tap that could cost anything");

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from analysed import TAPPED, Analysed
-from support import BAD_INPUT, TINY, UNFOLDED, changed
+from support import BAD_INPUT, BROKEN, TINY, UNFOLDED, changed
 
 
 class Analyses(Analysed):
@@ -150,7 +150,7 @@ class Analyses(Analysed):
         done = self.jostle(*steady, "mean_height", expect=BAD_INPUT)
         self.assertIn("there are 4", done.stderr)
         self.write("no results", "data.csv")
-        done = self.jostle("analyse", "data.csv", *steady[2:], "mean_height", expect=BAD_INPUT)
+        done = self.jostle("analyse", "data.csv", *steady[2:], "mean_height", expect=BROKEN)
         self.assertIn("not a results file", done.stderr)
         done = self.jostle("analyse", "tiny.h5", "spectrum", "--observable", "mean_height",
                            "--band", "0.3:0.1", expect=BAD_INPUT)

@@ -150,6 +150,15 @@ class Numbers(Refused):
                     done = self.jostle(*arguments, f"{option}={text}", expect=BAD_INPUT)
                     self.assertTrue(done.stderr + done.stdout)
 
+    def test_a_band_has_frequencies_of_a_value_per_tap(self):
+        self.results()
+        spectrum = ("analyse", "tiny.h5", "spectrum", "--observable", "mean_height", "--no-store")
+        for band in ("0.1:0.9", "-0.1:0.4", "-2:-1", "0.6:0.9", "0.1:1e300"):
+            self.refused(*spectrum, f"--band={band}", answer=f"--band {band}: frequencies of a value per tap are from 0")
+        told = [self.jostle(*spectrum, "--band", band).stdout for band in ("0.05:0.5", "0.05:")]
+        self.assertEqual(told[0], told[1])
+        self.jostle(*spectrum, "--band", ":0.4")
+
     def test_waiting_times_are_of_the_run_and_once(self):
         self.results()
         ageing = ("analyse", "tiny.h5", "ageing", "--observable", "mean_height")
@@ -224,6 +233,10 @@ class Words(Refused):
         self.write("", "packing.xyz")
         for command, file in (("fit", "curve.csv"), ("structure", "packing.xyz")):
             self.refused(command, file, "--live", answer=f"{file}: --live applies only to results files")
+        self.refused("fit", "curve.csv", "--no-store", answer="curve.csv: --no-store applies only to results files")
+        self.write(TAPPED)
+        self.refused("cost", "scene.json", "--replicates", 2, "--budget", "1m",
+                     answer="--budget and --replicates exclude each other")
         self.jostle("fit", "curve.csv", "--model", "kww", "--resample", "none")
         self.refused("fit", "curve.csv", "--fix", "tau=1", "--fix", "tau=2",
                      answer="tau is fixed already")
@@ -250,6 +263,72 @@ class Words(Refused):
         self.assertIn(r"1 \x89PNG\x1b[31m\xc2\x9b é\x01\x02", done.stderr)
         self.assertLess(len(done.stderr), 2500)
         self.assertTrue(done.stderr.replace("\n", "").replace("\t", "").isprintable())
+
+
+class Order(Refused):
+    """Lists of values before and behind the files."""
+
+    def test_a_list_before_a_file_does_not_take_the_file(self):
+        self.results()
+        shutil.copy(self.folder / "tiny.h5", self.folder / "plain")
+        shutil.copy(self.folder / "tiny.h5", self.folder / "other.h5")
+        self.write(CURVE, "curve.csv")
+        of_results = ("--observable", "mean_height", "--no-store")
+        for file in ("tiny.h5", "plain"):
+            for arguments in (["fit", "--model", "kww", file, *of_results],
+                              ["fit", "--model=kww", file, *of_results],
+                              ["fit", "--model", "kww", "inverse_log", file, *of_results],
+                              ["export", "--tap", 0, file, "--format", "extxyz", "--force"],
+                              ["export", "--tap", 0, 4, file, "--format", "extxyz", "--force"],
+                              ["structure", "--part", "profile", "layers", file, "--tap", 0, 4, "--no-store"],
+                              ["structure", "--tap", 0, file, "--part", "profile", "--no-store"],
+                              ["analyse", "--observable", "mean_height", file, "steady", "--no-store"],
+                              ["analyse", "--observable", "mean_height", "sweeps", file, "--last", 33, "steady",
+                               "--no-store"],
+                              ["analyse", "--no-store", "--observable", "mean_height", file, "other.h5", "steady"],
+                              ["analyse", "--lags", 1, 3, file, "ageing", *of_results],
+                              ["analyse", "--lags", 1, 3, "--", file, "ageing", *of_results],
+                              ["analyse", file, "ageing", *of_results, "--lags", 1, 3, "--waiting-times", 0, 9]):
+                with self.subTest(arguments=arguments):
+                    self.jostle(*arguments)
+        for arguments in (["--fix", "rho_inf=0.6", "tau=2", "curve.csv"],
+                          ["curve.csv", "--fix", "rho_inf=0.6", "tau=2"],
+                          ["--fix", "rho_inf=0.6", "tau=2", "--", "curve.csv"]):
+            fit = self.jostle("fit", "--model", "kww", *arguments).stdout
+            self.assertRegex(fit, "tau +2 .*fixed")
+
+    def test_a_list_that_may_hold_the_file_is_named(self):
+        self.results()
+        for arguments in (["--model", "kww", "gone"], ["--model", "kww", "inverse_log", "gone"]):
+            self.refused("fit", *arguments, "--observable", "mean_height",
+                         answer=f"no file is given, unless it is in {' '.join(arguments)}: put the file first")
+            self.refused("fit", *arguments, code=BROKEN, answer="gone: cannot open")
+        self.refused("analyse", "--observable", "mean_height", "gone", "steady",
+                     answer="gone is neither a file nor an analysis")
+        self.refused("fit", "--model", "kww,inverse_log", "--observable", "mean_height", answer="input is required")
+        self.refused("structure", "--tap", 0, -1, "tiny.h5", answer="--tap -1: neither a number nor")
+
+    def test_values_after_commas_blanks_and_in_turn_are_one_list(self):
+        self.results()
+        self.write(CURVE, "curve.csv")
+        for command, name, values in (
+                (["fit", "curve.csv", "--model", "kww"], "--fix", ("rho_inf=0.6", "tau=2")),
+                (["fit", "curve.csv", "--law", "a + b/t", "--range", "1:"], "--start", ("a=1", "b=1")),
+                (["analyse", "tiny.h5", "steady", "--no-store"], "--observable", ("mean_height", "sweeps")),
+                (["analyse", "tiny.h5", "ageing", "--no-store", "--observable", "mean_height"], "--lags", (1, 3)),
+                (["structure", "tiny.h5", "--no-store", "--tap", "all"], "--part", ("profile", "layers")),
+                (["structure", "tiny.h5", "--no-store", "--part", "profile"], "--tap", (0, 4))):
+            with self.subTest(command=command, name=name):
+                told = [self.jostle(*command, *words).stdout
+                        for words in ((name, ",".join(map(str, values))), (name, *values),
+                                      [word for value in values for word in (name, value)])]
+                self.assertEqual(told, told[:1] * 3)
+                self.assertNotEqual(told[0], self.jostle(*command, name, values[0], expect=None).stdout)
+        self.assertEqual(*(self.jostle("structure", "tiny.h5", "--no-store", *taps).stdout
+                           for taps in ((), ("--tap", "all"))))
+        self.refused("fit", "tiny.h5", "--observable", "mean_height,sweeps",
+                     answer="--observable mean_height,sweeps: a command fits one observable; run it for each")
+        self.refused("structure", "tiny.h5", "--tap", "0,x", answer='--tap x: neither a number nor "all"')
 
 
 class Once(Refused):
@@ -320,6 +399,35 @@ class Doubtful(Case):
             with self.subTest(scene=path.name):
                 text = self.jostle("check", path, "--no-pilot").stdout
                 self.assertNotIn("\nwarnings\n", text)
+
+
+class Kinds(Refused):
+    """Paths that are no results: one exit code for all commands."""
+
+    commands = (["info"], ["info", "--digest"], ["report"], ["merge", "-o", "all.h5"], ["structure"],
+                ["export", "--format", "vtp"], ["export", "--format", "vtp", "--sweep-point", "0"],
+                ["export", "--format", "results", "-o", "copy.h5"])
+
+    def test_a_folder_and_a_file_of_another_kind_end_every_command_alike(self):
+        (self.folder / "folder").mkdir()
+        (self.folder / "folder.h5").mkdir()
+        self.write("{}", "age.json")
+        self.write("no results", "text.h5")
+        before = self.files()
+        for path in ("folder", "folder/", ".", "folder.h5", "age.json", "text.h5"):
+            of_folder = path not in ("age.json", "text.h5")
+            for command in self.commands:
+                if command[0] != "merge" or not of_folder:  # a folder of shards
+                    self.refused(*command, path, code=BROKEN, answer="folder" if of_folder else path)
+            self.refused("analyse", path, *STEADY, code=BROKEN, answer=path)
+            self.refused("analyse", *STEADY[1:], path, "steady", code=BROKEN, answer=path)
+            if path != "age.json":  # a text without columns
+                self.refused("fit", path, *STEADY[1:], code=BROKEN, answer=path)
+                self.refused("fit", path, code=BROKEN, answer=path)
+        self.refused("status", "age.json", code=BROKEN, answer="age.json: not an HDF5 file")
+        self.refused("fit", "age.json", answer="age.json: no column is named as t")
+        self.refused("fit", "folder", *STEADY[1:], code=BROKEN, answer="it is a folder, not a file: name a file in it")
+        self.assertEqual(self.files(), before)
 
 
 class Streams(Refused):

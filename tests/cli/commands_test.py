@@ -67,8 +67,9 @@ class SelfTest(Case):
         self.assertNotIn("FAILED", done.stdout)
 
     def test_a_folder_that_cannot_be_written_is_named(self):
-        result = self.jostle("selftest", "--folder", "missing", expect=BAD_INPUT)
+        result = self.jostle("selftest", "--folder", "missing", expect=BROKEN)
         self.assertIn("missing: cannot make a folder there (No such file", result.stderr)
+        self.assertIn("name another with --folder\n", result.stderr)
 
 
 class Scenes(Case):

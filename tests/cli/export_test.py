@@ -9,7 +9,7 @@ import xml.etree.ElementTree
 
 import h5py
 
-from support import BAD_INPUT, BROKEN, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, TINY, UNFOLDED, Case, changed
 
 N = TINY["spheres"]
 
@@ -36,7 +36,7 @@ class Export(Case):
     def test_extended_xyz_has_the_stored_bits_and_is_a_start(self):
         out = self.jostle("export", "tiny.h5", "--format", "extxyz", "--sweep-point", 1,
                           "--realization", 2).stdout
-        self.assertEqual(out, f"tiny_point1_realization2.xyz: sweep point 1, realization 2, tap 4, {N} spheres\n")
+        self.assertEqual(out, f"tiny_point1_realization2.xyz: sweep point 1 (dilate = 0.1), realization 2, tap 4, {N} spheres\n")
         lines = self.lines("tiny_point1_realization2.xyz")
         self.assertEqual(len(lines), N + 2)
         for line, centre in zip(lines[2:], self.centres(1, 2)):
@@ -125,7 +125,9 @@ class Export(Case):
         self.run_scene("-o", "two.h5")
         refused = self.jostle("export", "two.h5", "--format", "extxyz", "--sweep-point", "dilate=0.05",
                               expect=BAD_INPUT)
-        self.assertIn("--sweep-point dilate=0.05: points 0, 1 have it", refused.stderr)
+        self.assertIn("--sweep-point dilate=0.05: points 0, 1 have it, and the command uses only one: choose it by "
+                      "number, as number=0", refused.stderr)
+        self.jostle("export", "two.h5", "--format", "extxyz", "--sweep-point", "number=1", "-o", "numbered.xyz")
         self.jostle("export", "two.h5", "--format", "extxyz", "--sweep-point", "1")
 
     def test_files_that_exist_are_kept_without_force(self):
@@ -161,7 +163,9 @@ class Export(Case):
         for arguments, answer in (
                 (["--tap", 3], "no positions of tap 3; kept: 0, 4"),
                 (["--realization", 3], "sweep point 1, realization 2: taps 0, 4"),
-                (["--sweep-point", 2], "the file has"),
+                (["--sweep-point", 2], "there is none. The sweep points are\n  0  /protocol/0/tap/dilate=0.02\n"),
+                (["--sweep-point", "number=2"], "there is none. The sweep points are"),
+                (["--sweep-point", "dilat=0.02"], 'Did you mean "dilate = 0.02"? The sweep points are'),
                 (["--tap", "x"], "--tap x: neither a number nor"),
                 (["--format", "pdb"], "pdb")):
             with self.subTest(arguments=arguments):
@@ -172,7 +176,7 @@ class Export(Case):
                 self.assertIn(answer, self.jostle(*command, *arguments, expect=BAD_INPUT).stderr)
                 self.assertEqual(self.files(), before)
         self.assertIn("neither a results file", self.jostle("export", "scene.json", "--format",
-                                                            "vtp", expect=BAD_INPUT).stderr)
+                                                            "vtp", expect=BROKEN).stderr)
 
     def test_a_file_without_positions_says_so(self):
         self.write(changed(TINY, name="bare", snapshots={"taps": [0, 4], "keep": ["coordination"]}))
@@ -182,6 +186,12 @@ class Export(Case):
 
 
 class SweepPoints(Case):
+    def test_the_help_gives_the_forms_of_a_sweep_point_and_the_columns_of_mixtures(self):
+        for command in ("fit", "analyse", "structure", "cost", "report", "export"):
+            text = " ".join(self.jostle(command, "--help", environment=UNFOLDED).stdout.split())
+            self.assertRegex(text, r"--sweep-point TEXT [^-]*number, VALUE or NAME=VALUE", command)
+        self.assertIn("the volume of its Voronoi cell, radical in a mixture. Equal spheres also have q6", text)
+
     def points(self, name, wanted):
         """Sweep points that fit finds."""
         told = self.jostle("fit", name, "--observable", "mean_height", "--model", "kww", "--json", "--no-store",
@@ -189,12 +199,31 @@ class SweepPoints(Case):
         titles = [curve["title"] for curve in json.loads(told)["curves"]]
         return [int(re.search(r"sweep point (\d+)", title).group(1)) for title in titles]
 
-    def test_a_number_names_a_point_before_a_value(self):
+    def refused(self, name, wanted):
+        return self.jostle("fit", name, "--observable", "mean_height", "--no-store", "--sweep-point", wanted,
+                           expect=BAD_INPUT, environment=UNFOLDED).stderr
+
+    def test_a_number_that_is_a_value_of_another_point_names_none(self):
         self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}],
-                           sweep={"/protocol/0/tap/dilate": [0.02, 2, 1]}))
+                           sweep={"/protocol/0/tap/dilate": [0.02, 2, 1, 3]}))
         self.run_scene()
-        for wanted, point in (("1", 1), ("2", 2), ("0.02", 0), ("dilate=1", 2)):
+        for wanted, point in (("0", 0), ("3", 3), ("0.02", 0), ("dilate=1", 2), ("number=1", 1), ("number=2", 2)):
             self.assertEqual(self.points("tiny.h5", wanted), [point], wanted)
+        self.assertIn("--sweep-point 2: 2 is the number of a sweep point (dilate = 1) and a value or label of another, "
+                      "number 1 (dilate = 2): write number=2 or dilate=2\n", self.refused("tiny.h5", "2"))
+        out = self.jostle("export", "tiny.h5", "--format", "extxyz", "--tap", 4, "--sweep-point", "number=2").stdout
+        self.assertIn("tiny_point2.xyz: sweep point 2 (dilate = 1), realization 0", out)
+
+    def test_a_number_that_is_a_label_of_another_point_names_none(self):
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}],
+                           point_labels=["1", "weak"]))
+        self.run_scene()
+        self.assertIn("write number=1 or number=0\n", self.refused("tiny.h5", "1"))
+        for wanted, point in (("weak", 1), ("number=0", 0), ("number=1", 1)):
+            self.assertEqual(self.points("tiny.h5", wanted), [point], wanted)
+        refused = self.refused("tiny.h5", "wek")
+        self.assertIn('--sweep-point wek: there is none. Did you mean "weak"? The sweep points are\n'
+                      "  0  1  /protocol/0/tap/dilate=0.02\n  1  weak  /protocol/0/tap/dilate=0.1\n", refused)
 
     def test_a_part_names_the_value_that_it_makes(self):
         scene = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 8}],

@@ -175,7 +175,9 @@ class Measured(WithCurve):
                 (["data.csv", "--range", "a:b"], "FIRST:LAST"),
                 (["data.csv", "--fix", "tau"], "NAME=NUMBER"),
                 (["data.csv", "--model", "kww", "--fix", "B=1"], "no parameter B"),
-                (["data.csv", "--observable", "mean_height"], "not a results file")):
+                (["data.csv", "--observable", "mean_height"],
+                 "data.csv: not a results file, but a text file, which has one curve: leave --observable out"),
+                (["data.csv", "--sweep-point", "0"], "which has one curve: leave --sweep-point out")):
             with self.subTest(arguments=arguments):
                 result = self.jostle("fit", *arguments, expect=BAD_INPUT)
                 self.assertIn(message, result.stderr + result.stdout)

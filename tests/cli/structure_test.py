@@ -247,10 +247,10 @@ class Structure(Case):
                                   (["tiny.h5", "--settings", "bad.json"], 'mean "bin_width"'),
                                   (["tiny.h5", "--settings", "none.json"], "nor is it a JSON"),
                                   (["tiny.h5", "tiny.h5"], "one results file"),
-                                  (["scene.json"], "neither a results file"),
                                   (["tiny.h5", "--sweep-point", 9], "9")):
             with self.subTest(arguments=arguments):
                 self.assertIn(answer, self.structure(*arguments, expect=BAD_INPUT).stderr)
+        self.assertIn("scene.json: neither a results file", self.structure("scene.json", expect=BROKEN).stderr)
         self.assertIn("must be in diameters", self.structure("radii.xyz", expect=BROKEN).stderr)  # by the reader
         for name, x in (("apart", 2.5), ("inside", 1.3)):
             (self.folder / f"{name}.xyz").write_text(

@@ -85,7 +85,7 @@ def structure_of(jostle, path, scene, point, realization, taps):
         return [], []
     with tempfile.TemporaryDirectory() as folder:
         frames = pathlib.Path(folder) / "frames.xyz"
-        subprocess.run([jostle, "export", path, "--format", "extxyz", "-o", frames, "--sweep-point", str(point),
+        subprocess.run([jostle, "export", path, "--format", "extxyz", "-o", frames, "--sweep-point", f"number={point}",
                         "--realization", str(realization), "--tap", "all"], check=True, capture_output=True)
         told = subprocess.run([jostle, "structure", frames, "--settings", json.dumps(settings), "--part",
                                ",".join(settings), "--no-store", "--json"], check=True, stdout=subprocess.PIPE)

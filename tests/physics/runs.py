@@ -152,7 +152,7 @@ class Run:
         for realization in range(self.realizations):
             frames = self.path.with_suffix(f".p{point}r{realization}.xyz")
             subprocess.run([self.jostle, "export", self.path, "--format", "extxyz", "-o", frames,
-                            "--sweep-point", str(point), "--realization", str(realization),
+                            "--sweep-point", f"number={point}", "--realization", str(realization),
                             "--tap", "all", "--force"], check=True, stdout=subprocess.DEVNULL)
             settings = {part: self.scene.get("structure", {}).get(part, {}) for part in parts}
             tables = self.asked("structure", frames, "--settings", json.dumps(settings),

@@ -33,6 +33,17 @@ class Run(Case):
         self.addCleanup(results.close)
         return results
 
+    def test_points_are_numbers_even_where_a_value_is_the_number_of_another(self):
+        path = made(changed(SHORT, name="lifts", sweep={"/protocol/0/tap/dilate": [1, 0.1]}))
+        results = self.open(path)
+        for point in (0, 1):
+            file = pathlib.Path(jostle.export(results, f"{point}.xyz", format="extxyz", point=point))
+            first = [float(word) for word in file.read_text().splitlines()[2].split()[1:4]]
+            np.testing.assert_array_equal(first, results.positions(point)[0])
+            jostle.plot.figures(results, point=point)
+        with self.assertRaisesRegex(jostle.JostleError, "write number=1 or dilate=1"):
+            jostle.fit(path, "mean_height", sweep_point=1)
+
     def test_a_dict_is_run_and_resumed_as_its_file_is(self):
         results = self.run_scene(SHORT, threads=1)
         self.assertEqual(pathlib.Path(results.path), pathlib.Path("tiny.h5"))
