@@ -58,6 +58,8 @@ Json realization_json(const RealizationSummary& realization, bool alive, std::st
             {"taps_recorded", realization.taps()},
             {unit, realization.work.effort.units},
             {"seconds", realization.work.seconds}};
+  if (realization.status == RealizationStatus::running && !(realization.work.seconds > 0))
+    json[unit] = json["seconds"] = nullptr;  // killed before it recorded a cost
   if (!realization.reason.empty()) json["reason"] = realization.reason;
   return json;
 }
