@@ -138,6 +138,8 @@ class ResultsFile {
   std::vector<Table> tables(const std::string& group) const;
   /// Names of all derived tables with their group first, in order: "fits/point_0000/...".
   std::vector<std::string> table_names() const;
+  /// Names of the derived tables that hold only the reason why they have no results.
+  std::vector<std::string> tables_without_results() const;
 
  private:
   class Impl;

@@ -230,6 +230,11 @@ class Analyses(Analysed):
         self.assertRegex(refused, "^no sweep point has a value of steady/sigma of mean_height; "
                                   "at sqrt_epsilon = 0.01, 0.02: lower bound of the deviation .*: the taps are too few "
                                   "for their memory. Average over more taps")
+        name = "analysis/sweep/mean_height/steady_sigma"
+        self.assertEqual(self.info("tiny.h5")["tables_without_results"], [name])
+        listed = self.jostle("info", "tiny.h5").stdout
+        self.assertIn(f"/{name}: no result\n", listed)
+        self.assertIn("/analysis/point_0000/steady/mean_height\n", listed)
         shown = self.jostle("analyse", "tiny.h5", "sweep", "--observable", "mean_height", "--quantity", "steady/sigma",
                             expect=BAD_INPUT)
         self.assertNotIn("0 rows", shown.stdout)
@@ -313,6 +318,26 @@ class Analyses(Analysed):
         refused = self.jostle("analyse", "single0.h5", "sweep", "--observable", "mean_height",
                               "--quantity", "kww/tau", expect=BAD_INPUT).stderr
         self.assertIn("make the analysis or the fit first", refused)
+
+    def test_a_request_without_any_result_stores_nothing(self):
+        self.write(TAPPED)
+        self.run_scene()
+        self.jostle("analyse", "tiny.h5", "steady", "--observable", "mean_height")
+        before = (self.folder / "tiny.h5").read_bytes()
+
+        def refused(*arguments, answer):
+            shown = self.jostle("analyse", "tiny.h5", *arguments, expect=BAD_INPUT).stderr
+            self.assertIn(answer, " ".join(shown.split()))
+            self.assertEqual((self.folder / "tiny.h5").read_bytes(), before)
+
+        sweep = ("sweep", "--observable", "mean_height", "--quantity")
+        refused(*sweep, "steady/sigm", answer='Did you mean "steady/sigma"?')
+        refused(*sweep, "stedy/sigma", answer='Did you mean "steady/sigma"?')
+        refused("sweep", "--observable", "mean_hight", "--quantity", "steady/sigma",
+                answer='Did you mean "mean_height"?')
+        refused("sweep", "--observable", "mean_height", "mean_hight", answer='Did you mean "mean_height"?')
+        refused("hysteresis", "--observable", "mean_height", "--last", "1000", answer="no table could be made")
+        refused("memory", "--observable", "mean_height", answer="no table could be made")
 
     def test_several_files_are_each_given_their_tables(self):
         for name in ("a", "b"):

@@ -355,6 +355,8 @@ std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const
         if (!order[i].empty()) table.notes.emplace_back("at", order[i]);
         tables.push_back(std::move(table));
       }
+    } catch (const BadArgument&) {
+      throw;
     } catch (const BadInput& refusal) {
       tables.push_back({.name = name, .notes = {{"refused", refusal.what()}}});
     }
