@@ -300,6 +300,11 @@ class Analyses(Analysed):
                                "--against", "dilate")["tables"]
         self.assertEqual(by_name, tables)
         self.assertEqual(tables[0]["axes"]["sqrt_epsilon"]["values"], [0.1, 0.2])
+        for key in ("/relax/stop/sweeps", "/seed"):
+            refused = self.jostle("analyse", "crossed.h5", "sweep", "--observable", "bottom_fraction", "--against", key,
+                                  expect=BAD_INPUT).stderr
+            self.assertIn(f'"{key}" is not swept (swept: /protocol/0/tap/dilate, /protocol/0/count, /spheres)',
+                          " ".join(refused.split()))
         self.assertEqual(self.tables("crossed.h5"), ["analysis/sweep/bottom_fraction/value_0000",
                                                      "analysis/sweep/bottom_fraction/value_0001"])
 
@@ -315,6 +320,11 @@ class Analyses(Analysed):
         self.assertEqual(curve["axes"]["sqrt_epsilon"]["values"], [0.1, 0.2, 0.3])
         self.assertTrue(0.4 < min(curve["quantities"]["bottom_fraction"]["values"]) < 0.7)
         self.assertEqual(self.tables("single0.h5"), [])
+        self.jostle("analyse", "single0.h5", "single1.h5", "sweep", "--observable", "bottom_fraction", "--against",
+                    "/protocol/0/tap/dilate")
+        refused = self.jostle("analyse", "single0.h5", "single1.h5", "sweep", "--observable", "bottom_fraction",
+                              "--against", "/spheres", expect=BAD_INPUT).stderr
+        self.assertIn('"/spheres" is not swept (swept: none)', " ".join(refused.split()))
         refused = self.jostle("analyse", "single0.h5", "sweep", "--observable", "mean_height",
                               "--quantity", "kww/tau", expect=BAD_INPUT).stderr
         self.assertIn("make the analysis or the fit first", refused)
