@@ -91,7 +91,7 @@ class ResultsFile {
   RunState state() const;
   const Shard& shard() const;
   const Study& study() const;
-  const std::vector<Provenance>& provenance() const;  // one a process that worked on it
+  const std::vector<Provenance>& provenance() const;  // one per process that worked on it
   /// Marks this run's parts; random.
   const std::string& run_id() const;
 
