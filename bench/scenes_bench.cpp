@@ -24,7 +24,7 @@ struct ForgetfulSink final : Sink {
   std::optional<RealizationState> begin(RealizationId) override { return std::nullopt; }
   void append(RealizationId, const TapRow&) override {}
   void snapshot(RealizationId, const SnapshotRecord&) override {}
-  void checkpoint(RealizationId, const RealizationState&) override {}
+  void checkpoint(RealizationId, const RealizationState&, const Work&) override {}
   void end(RealizationId, const RealizationState&, const Outcome&) override {}
 };
 

@@ -101,18 +101,19 @@ class Check {
   }
 
   void fits_have_curves() {
-    if (!all_sound({"/fits", "/observe", "/protocol"})) return;
+    if (!all_sound({"/observe"})) return;
     std::vector<std::string> names;
     for (const Observable& observable : scene_.observables) names.push_back(label(observable).name);
     for (std::size_t i = 0; i < scene_.fits.size(); ++i) {
       const FitRequest& fit = scene_.fits[i];
       const std::string place = fmt::format("/fits/{}", i);
-      if (std::ranges::find(names, fit.observable) == names.end()) {
+      const bool is_read = !fit.observable.empty() && all_sound({place + "/observable"});
+      if (is_read && std::ranges::find(names, fit.observable) == names.end()) {
         note(place + "/observable",
              fmt::format("\"{}\" is not observed (observed: {}).{}", fit.observable, listed(names),
                          did_you_mean(fit.observable, names)));
       }
-      if (fit.first > total_taps(scene_.protocol)) {
+      if (all_sound({place + "/range", "/protocol"}) && fit.first > total_taps(scene_.protocol)) {
         note(place + "/range", fmt::format("begins at tap {}, after the last one, {}", fit.first,
                                            total_taps(scene_.protocol)));
       }

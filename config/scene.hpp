@@ -106,8 +106,8 @@ struct SnapshotChoice {
 
 /// How the motion of spheres is followed while they are tapped. docs/reference/analyses.md.
 struct MotionChoice {
-  std::optional<TapChoice> origins;                  // absent: 0 and two a decade
-  std::optional<TapChoice> lags;                     // absent: ten a decade
+  std::optional<TapChoice> origins;                  // absent: 0 and two per decade
+  std::optional<TapChoice> lags;                     // absent: ten per decade
   std::vector<double> overlap_lengths = {0.1, 0.3};  // diameters, ascending
   std::uint32_t layers = 5;
   bool operator==(const MotionChoice&) const = default;

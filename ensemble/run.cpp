@@ -132,7 +132,8 @@ void EnsembleRun::carry_on(RealizationId id, Realization& realization,
     outcome.work.effort += slice.effort;
     hand_over(id, slice);
     if (!realization.finished() && Clock::now() - checkpointed >= options_.checkpoint_every) {
-      sink_.checkpoint(id, realization.state());
+      outcome.work.seconds = seconds_since(began);
+      sink_.checkpoint(id, realization.state(), outcome.work);
       checkpointed = Clock::now();
     }
   }

@@ -95,8 +95,8 @@ class Sink {
   virtual std::optional<RealizationState> begin(RealizationId id) = 0;
   virtual void append(RealizationId id, const TapRow& row) = 0;
   virtual void snapshot(RealizationId id, const SnapshotRecord& record) = 0;
-  /// Makes everything appended so far, and the state, durable.
-  virtual void checkpoint(RealizationId id, const RealizationState& state) = 0;
+  /// Makes everything appended so far, the state, and the work of this process so far durable.
+  virtual void checkpoint(RealizationId id, const RealizationState& state, const Work& work) = 0;
   /// Makes everything durable and closes the realization. The outcome's status is done; running,
   /// where the run was stopped; or failed: the state is then empty, and a retry begins anew.
   virtual void end(RealizationId id, const RealizationState& state, const Outcome& outcome) = 0;

@@ -36,12 +36,16 @@ std::string unit_of_values(const CurveUnits& units) {
 }
 
 std::string one_asymptote(const Estimate& estimate, const CurveUnits& units) {
-  const std::string value =
-      estimate.parameter.name + " " + estimate_text(estimate) + unit_of_values(units);
-  if (estimate.identifiability <= Identifiability::not_examined) return value;
+  const std::string& name = estimate.parameter.name;
+  const std::string unit = unit_of_values(units);
+  const std::string value = name + " " + estimate_text(estimate) + unit;
+  const std::string none = name + " has no value";
+  if (estimate.identifiability <= Identifiability::not_examined)
+    return estimate.has_value() ? value : none;
   const Interval& interval = estimate.intervals[1];
   const bool is_open = !std::isfinite(interval.lower) && !std::isfinite(interval.upper);
-  if (is_open) return estimate.parameter.name + " has no limit on either side";
+  if (is_open) return name + " has no limit on either side";
+  if (!estimate.has_value()) return none + ", 95 %: " + interval_text(estimate, 1) + unit;
   return value + ", 95 %: " + interval_text(estimate, 1);
 }
 

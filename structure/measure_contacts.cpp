@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* donev = "Donev et al. 2005, doi:10.1103/PhysRevE.71.011105";
 
-/// 0, and from 1e-6 on five a decade.
+/// 0, and from 1e-6 on five per decade.
 std::vector<double> gap_grid(double largest) {
   std::vector<double> grid{0};
   for (int k = 0;; ++k) {

@@ -59,11 +59,12 @@ void add_mean_of_axes(const Packing& packing, Measurement& measurement) {
   std::vector<double> mean = measurement.find("phi_x")->values;
   const std::vector<double>& second_profile = measurement.find("phi_y")->values;
   for (std::size_t k = 0; k < mean.size(); ++k) mean[k] = 0.5 * (mean[k] + second_profile[k]);
-  measurement.quantities.push_back({.name = "phi_xy",
-                                    .places = "x",
-                                    .values = std::move(mean),
-                                    .long_name = "the mean of phi_x and phi_y",
-                                    .source = "Philippe & Bideau 2001, fig. 7"});
+  measurement.quantities.push_back(
+      {.name = "phi_xy",
+       .places = "x",
+       .values = std::move(mean),
+       .long_name = "mean of the packing fractions of slabs parallel to both sides",
+       .source = "Philippe & Bideau 2001, fig. 7"});
 }
 
 void add_from_walls(const Packing& packing, HeightWindow window, const SidesSettings& settings,
@@ -126,8 +127,8 @@ Measurement measure_part(MeasuredPacking& measured, const ProfileSettings& setti
   add_profile("height", vertical, "phi", "packing fraction of slabs",
               "Philippe & Bideau 2001, sec. IV", measurement);
   add_profile("height", settings.smoothing > 0 ? smoothed(vertical, settings.smoothing) : vertical,
-              "phi_smoothed", "the same after a boxcar mean", "Philippe & Bideau 2001, fig. 6",
-              measurement);
+              "phi_smoothed", "packing fraction of slabs, after a boxcar mean",
+              "Philippe & Bideau 2001, fig. 6", measurement);
   measurement.quantities.push_back(
       {.name = "phi_cut",
        .places = "height",

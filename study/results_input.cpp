@@ -50,7 +50,7 @@ bool has_own_label(const StudyPoint& point) {
   });
 }
 
-/// The sweep points that can be named, one a line.
+/// The sweep points that can be named, one per line.
 std::string known(const Study& study) {
   constexpr std::size_t most_lines = 50;
   std::string lines;

@@ -213,9 +213,9 @@ void add_ageing(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
                              code = run_analyses(arguments, analyses);
                            });
   kinds.add_option(kind, "--waiting-times", a.waiting_times,
-                   "Taps t_W, separated by commas (default: 0 and two a decade)",
+                   "Taps t_W, separated by commas (default: 0 and two per decade)",
                    [](Option option) { option.separated_by(','); });
-  kinds.add_option(kind, "--lags", a.lags, "Taps t, likewise (default: ten a decade)",
+  kinds.add_option(kind, "--lags", a.lags, "Taps t, likewise (default: ten per decade)",
                    [](Option option) { option.separated_by(',').limit(1, 1000000000); });
   add_example(kind, "jostle analyse fig5.h5 ageing --observable mean_height --waiting-times 10,99");
 }

@@ -58,6 +58,8 @@ Json realization_json(const RealizationSummary& realization, bool alive, std::st
             {"taps_recorded", realization.taps()},
             {unit, realization.work.effort.units},
             {"seconds", realization.work.seconds}};
+  if (realization.status == RealizationStatus::running && !(realization.work.seconds > 0))
+    json[unit] = json["seconds"] = nullptr;  // killed before it recorded a cost
   if (!realization.reason.empty()) json["reason"] = realization.reason;
   return json;
 }
@@ -103,6 +105,7 @@ Json info_json(const ResultsFile& file, const RunStatus& status) {
           {"points", points},
           {"realizations", realizations},
           {"tables", file.table_names()},
+          {"tables_without_results", file.tables_without_results()},
           {"bytes", {{"file", status.file_bytes}, {"parts", status.parts_bytes}}}};
 }
 
@@ -143,7 +146,10 @@ void print_info(const ResultsFile& file, const RunStatus& status, const Layout& 
   line("seed", fmt::to_string(study.points.front().seed));
   line("size", fmt::format("{} and {} of parts", format_bytes(double(status.file_bytes)),
                            format_bytes(double(status.parts_bytes))));
-  for (const std::string& table : file.table_names()) line("table", "/" + table);
+  const std::vector<std::string> refused = file.tables_without_results();
+  for (const std::string& table : file.table_names())
+    line("table", fmt::format("/{}{}", table,
+                              std::ranges::binary_search(refused, table) ? ": no result" : ""));
   for (const auto& process : file.provenance()) {
     line("made by", fmt::format("jostle {} ({}) on {}, {}, {} thread{}", process.version,
                                 process.git_revision, process.host, process.started,

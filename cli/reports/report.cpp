@@ -115,14 +115,14 @@ std::string cost_line(const PointCost& cost, const std::string& unit) {
   std::string line = fmt::format("{} done", cost.done);
   if (cost.unfinished > 0) line += fmt::format(", {} unfinished", cost.unfinished);
   if (cost.missing > 0) line += fmt::format(", {} missing", cost.missing);
-  line += fmt::format(", {} failed; {} {} in {} of one core", cost.failed,
+  line += fmt::format(", {} failed", cost.failed);
+  if (!(cost.work.seconds > 0)) return line + "; no cost is recorded yet\n";
+  line += fmt::format("; {} {} in {} of one core",
                       format_count(static_cast<double>(cost.work.effort.units)), unit,
                       format_duration(Seconds(cost.work.seconds)));
-  if (cost.work.seconds > 0) {
-    line += fmt::format(
-        ", {} {}/s per core",
-        format_count(static_cast<double>(cost.work.effort.units) / cost.work.seconds), unit);
-  }
+  line += fmt::format(", {} {}/s per core",
+                      format_count(static_cast<double>(cost.work.effort.units) / cost.work.seconds),
+                      unit);
   return line + "\n";
 }
 

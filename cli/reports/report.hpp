@@ -9,7 +9,7 @@ namespace jostle::inline cli {
 
 /// Contents of a file in one line: how many realizations have ended, and, of a single sweep point,
 /// where its first fraction (or its first observable) went. Then for every sweep point a table over
-/// taps, about three a decade, of the mean of every observable with its standard error, and the
+/// taps, about three per decade, of the mean of every observable with its standard error, and the
 /// means that the engine has shown beside them where there is room, or, with all columns, sigma and
 /// all of these; the number M of realizations where not all reached every tap. Below it the
 /// engine's sentences (capped relaxations), cost, and failed realizations with seed and reason.

@@ -101,6 +101,10 @@ double hours(Seconds time) {
   return time.count() / 3600;
 }
 
+Json hours_json(const std::optional<Seconds>& time) {
+  return time ? Json(hours(*time)) : Json(nullptr);
+}
+
 }  // namespace
 
 JobArray job_array(const ShardsStatus& study) {
@@ -158,9 +162,10 @@ std::string status_text(const ShardsStatus& study) {
   line("realizations", fmt::format("{} of {} done{}", sums.done, sums.realizations,
                                    sums.failed > 0 ? fmt::format(", {} failed", sums.failed) : ""));
   line("taps", fmt::format("{} of {}", sums.taps, sums.all_taps));
-  line("core-hours", finite_text("{:.3g} used, {}", hours(study.used),
-                                 study.left ? finite_text("about {:.3g} left", hours(*study.left))
-                                            : "what is left is not known before the first tap"));
+  line("core-hours", (study.used ? finite_text("{:.3g} used, ", hours(*study.used))
+                                 : "those used are not known before the first checkpoint, ") +
+                         (study.left ? finite_text("about {:.3g} left", hours(*study.left))
+                                     : "those left are not known before the first recorded tap"));
   for (const std::string& path : study.twice)
     line("twice", path + " holds a shard that another file holds");
   const std::string restore =
@@ -197,18 +202,17 @@ Json status_json(const ShardsStatus& study, const std::vector<std::string>& redo
   Json counts = Json::object();
   for (const ShardState state : all_states)
     counts[name_of(state)] = static_cast<std::uint64_t>(study.indices(state).size());
-  Json json{{"scene", study.scene},
-            {"counts", counts},
-            {"realizations", sums.realizations},
-            {"realizations_done", sums.done},
-            {"realizations_failed", sums.failed},
-            {"core_hours_used", hours(study.used)},
-            {"shards", shards},
-            {"redo", commands},
-            {"twice", twice},
-            {"unread", unread}};
-  json["core_hours_left"] = study.left ? Json(hours(*study.left)) : Json(nullptr);
-  return json;
+  return {{"scene", study.scene},
+          {"counts", counts},
+          {"realizations", sums.realizations},
+          {"realizations_done", sums.done},
+          {"realizations_failed", sums.failed},
+          {"core_hours_used", hours_json(study.used)},
+          {"core_hours_left", hours_json(study.left)},
+          {"shards", shards},
+          {"redo", commands},
+          {"twice", twice},
+          {"unread", unread}};
 }
 
 }  // namespace jostle::inline cli

@@ -21,8 +21,8 @@ struct PointSeries {
 PointSeries point_series(const ResultsFile& file, std::uint32_t point,
                          std::span<const RealizationSummary> realizations);
 
-/// A row for about three taps a decade: the observables' means with their standard errors, and what
-/// of the engine's means has room beside them; with all columns, sigma and all of these.
+/// A row for about three taps per decade: the observables' means with their standard errors, and
+/// what of the engine's means has room beside them; with all columns, sigma and all of these.
 std::string tap_table(const PointSeries& series, const Layout& layout);
 
 /// 0, 1, 2, 5, 10, 20, 50, ... below `last`, and `last`.

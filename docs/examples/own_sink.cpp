@@ -22,7 +22,8 @@ class FirstObservable final : public jostle::Sink {
     series_[id].push_back(row.observables.at(0));
   }
   void snapshot(jostle::RealizationId, const jostle::SnapshotRecord&) override {}
-  void checkpoint(jostle::RealizationId, const jostle::RealizationState&) override {}
+  void checkpoint(jostle::RealizationId, const jostle::RealizationState&,
+                  const jostle::Work&) override {}
   void end(jostle::RealizationId id, const jostle::RealizationState&,
            const jostle::Outcome& outcome) override {
     if (outcome.status == jostle::RealizationStatus::done) return;

@@ -13,7 +13,7 @@ namespace jostle::inline engine {
 struct DrivenSums {
   struct Bin {
     double spheres = 0;                // in all samples together
-    double freedom = 0;                // less one a sample that had any
+    double freedom = 0;                // less one per sample that had any
     double lateral = 0, vertical = 0;  // squares of velocities about the mean of the sample
   };
   double bin_width = 0;  // diameters; 0: nothing is sampled

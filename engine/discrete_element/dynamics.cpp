@@ -168,7 +168,7 @@ class GrainDynamics final : public Dynamics {
     if (held <= most + times * by_weight) return;
     throw std::runtime_error(
         "the overlaps of the start hold " + std::to_string(held) +
-        " m g d a sphere, where weight would hold about " + std::to_string(by_weight) +
+        " m g d per sphere, where weight would hold about " + std::to_string(by_weight) +
         ": its springs would throw the bed apart; begin from a packing whose overlaps are those of "
         "its weight on these springs, or lower the stiffness");
   }

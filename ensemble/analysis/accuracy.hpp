@@ -22,7 +22,7 @@ struct PairedBias {
   double variance_reduction = 0;
 };
 
-/// values and reference: one a realization, NaN where it is missing.
+/// values and reference: one per realization, NaN where it is missing.
 PairedBias paired_bias(std::span<const double> values, std::span<const double> reference);
 
 /// True if a bias still grows with taps: its change from an earlier tap to a later one.
@@ -33,8 +33,8 @@ struct Growth {
   bool is_seen() const { return tails < significance_level; }
 };
 
-/// values and reference at both taps: one a realization, NaN where it is missing. Nothing is known
-/// below two pairs: NaN, and not seen.
+/// values and reference at both taps: one per realization, NaN where it is missing. Nothing is
+/// known below two pairs: NaN, and not seen.
 Growth bias_growth(std::span<const double> values_before, std::span<const double> reference_before,
                    std::span<const double> values, std::span<const double> reference);
 

@@ -92,8 +92,8 @@ struct AgeingSettings {
   static constexpr auto fields() {
     return std::tuple{
         field("waiting_times", &Self::waiting_times, TapNumbers{},
-              "Ages t_W; none: 0 and two a decade, up to a tenth of the taps"),
-        field("lags", &Self::lags, TapNumbers{}, "t, each at least 1; none: ten a decade")};
+              "Ages t_W; none: 0 and two per decade, up to a tenth of the taps"),
+        field("lags", &Self::lags, TapNumbers{}, "t, each at least 1; none: ten per decade")};
   }
 };
 

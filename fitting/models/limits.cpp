@@ -92,7 +92,7 @@ Parameter bent(const char* name, const char* meaning, ParameterUnit unit) {
   return {.name = name, .meaning = meaning, .unit = unit, .lower = 0};
 }
 
-const Parameter rate = bent("B/tau", "growth a tap at first", ParameterUnit::per_time);
+const Parameter rate = bent("B/tau", "growth per tap at first", ParameterUnit::per_time);
 const Parameter onset = bent("tau", "taps before the logarithm sets in", ParameterUnit::time);
 Parameter final_value(const std::string& name) {
   return level(name, "value after infinitely many taps");
@@ -117,7 +117,7 @@ std::shared_ptr<const Model> hyperbola() {
 std::shared_ptr<const Model> logarithm(const std::string& start) {
   return std::make_shared<LimitLaw>(
       "logarithm", start + " + (dX B) ln(1 + t/tau)",
-      std::vector<Parameter>{first_value(start), level("dX B", "growth a unit of the logarithm"),
+      std::vector<Parameter>{first_value(start), level("dX B", "growth per unit of the logarithm"),
                              onset},
       [](double t, double tau, double* terms, double* slopes) {
         terms[0] = 1;
@@ -144,7 +144,7 @@ std::shared_ptr<const Model> line_in_log(const char* at_one, const char* per_log
   return std::make_shared<LimitLaw>(
       "line_in_ln_t", std::string(at_one) + " + (" + per_log + ") ln t",
       std::vector<Parameter>{level(at_one, "value at t = 1"),
-                             level(per_log, "growth a unit of ln t")},
+                             level(per_log, "growth per unit of ln t")},
       [](double t, double, double* terms, double*) {
         terms[0] = 1;
         terms[1] = std::log(t);
@@ -155,7 +155,7 @@ std::shared_ptr<const Model> line_in_log(const char* at_one, const char* per_log
 std::shared_ptr<const Model> line(const std::string& start) {
   return std::make_shared<LimitLaw>(
       "line", start + " + r t",
-      std::vector<Parameter>{first_value(start), slope("r", "growth a tap")},
+      std::vector<Parameter>{first_value(start), slope("r", "growth per tap")},
       [](double t, double, double* terms, double*) {
         terms[0] = 1;
         terms[1] = t;
@@ -251,41 +251,42 @@ std::vector<Limit> InverseLogHeight::limits() const {
 }
 
 std::vector<Limit> Ageing::limits() const {
-  return {{std::make_shared<LimitLaw>(
-               "line_through_0", "r t", std::vector<Parameter>{slope("r", "growth a unit of time")},
-               [](double t, double, double* terms, double*) { terms[0] = t; }),
-           "the logarithm has not set in and the growth has hardly begun (tau and A_inf grow)",
-           [](const ParameterValues& p, double k, double, double last) {
-             return ParameterValues{p[0] * k * last, 1, k * last};
-           }},
-          {std::make_shared<LimitLaw>(
-               "saturation", "A_inf (1 - 1 / (1 + (B/tau) t))",
-               std::vector<Parameter>{
-                   level("A_inf", "value at infinite lag"),
-                   bent("B/tau", "growth a unit of time at first", ParameterUnit::per_time)},
-               [](double t, double c, double* terms, double* slopes) {
-                 const double left = 1 / (1 + c * t);
-                 terms[0] = c * t * left;
-                 slopes[0] = t * left * left;
-               }),
-           "the logarithm has not set in (B and tau grow together)",
-           [](const ParameterValues& p, double k, double, double last) {
-             return ParameterValues{p[0], p[1] * k * last, k * last};
-           }},
-          {std::make_shared<LimitLaw>(
-               "logarithm_from_0", "(A_inf B) ln(1 + t/tau)",
-               std::vector<Parameter>{
-                   level("A_inf B", "strength of the logarithm where B is small"),
-                   bent("tau", "lag before the logarithm sets in", ParameterUnit::time)},
-               [](double t, double tau, double* terms, double* slopes) {
-                 terms[0] = std::log1p(t / tau);
-                 slopes[0] = -(t / tau) / (tau + t);
-               }),
-           "no end of the logarithm is in sight (B goes to 0, A_inf to infinity)",
-           [](const ParameterValues& p, double k, double, double last) {
-             const double b = 1 / (k * std::log1p(last / p[1]));
-             return ParameterValues{p[0] / b, b, p[1]};
-           }}};
+  return {
+      {std::make_shared<LimitLaw>("line_through_0", "r t",
+                                  std::vector<Parameter>{slope("r", "growth per unit of time")},
+                                  [](double t, double, double* terms, double*) { terms[0] = t; }),
+       "the logarithm has not set in and the growth has hardly begun (tau and A_inf grow)",
+       [](const ParameterValues& p, double k, double, double last) {
+         return ParameterValues{p[0] * k * last, 1, k * last};
+       }},
+      {std::make_shared<LimitLaw>(
+           "saturation", "A_inf (1 - 1 / (1 + (B/tau) t))",
+           std::vector<Parameter>{
+               level("A_inf", "value at infinite lag"),
+               bent("B/tau", "growth per unit of time at first", ParameterUnit::per_time)},
+           [](double t, double c, double* terms, double* slopes) {
+             const double left = 1 / (1 + c * t);
+             terms[0] = c * t * left;
+             slopes[0] = t * left * left;
+           }),
+       "the logarithm has not set in (B and tau grow together)",
+       [](const ParameterValues& p, double k, double, double last) {
+         return ParameterValues{p[0], p[1] * k * last, k * last};
+       }},
+      {std::make_shared<LimitLaw>(
+           "logarithm_from_0", "(A_inf B) ln(1 + t/tau)",
+           std::vector<Parameter>{
+               level("A_inf B", "strength of the logarithm where B is small"),
+               bent("tau", "lag before the logarithm sets in", ParameterUnit::time)},
+           [](double t, double tau, double* terms, double* slopes) {
+             terms[0] = std::log1p(t / tau);
+             slopes[0] = -(t / tau) / (tau + t);
+           }),
+       "no end of the logarithm is in sight (B goes to 0, A_inf to infinity)",
+       [](const ParameterValues& p, double k, double, double last) {
+         const double b = 1 / (k * std::log1p(last / p[1]));
+         return ParameterValues{p[0] / b, b, p[1]};
+       }}};
 }
 
 std::vector<Limit> StretchedExponential::limits() const {
@@ -359,7 +360,7 @@ std::vector<Limit> TwoExponentials::limits() const {
           {std::make_shared<LimitLaw>(
                "critical_decay", "Z_inf + (a + b t) exp(-t/tau)",
                std::vector<Parameter>{level_inf, level("a", "amplitude of the decay"),
-                                      slope("b", "its growth a tap"), tau},
+                                      slope("b", "its growth per tap"), tau},
                [](double t, double time, double* terms, double* slopes) {
                  terms[0] = 1;
                  terms[1] = std::exp(-t / time);

@@ -52,7 +52,7 @@ Grid log_grid(const Curve& curve, std::span<const double> fixed, std::size_t b, 
 }
 
 // Where B and tau go to infinity together, B ln(1 + t/tau) is this times t.
-const Combination growth_rate = {"B/tau", "growth a tap at first", ParameterUnit::per_time, 2, 3,
+const Combination growth_rate = {"B/tau", "growth per tap at first", ParameterUnit::per_time, 2, 3,
                                  -1};
 
 }  // namespace
@@ -83,7 +83,7 @@ std::optional<Equivalent> InverseLogHeight::equivalent() const {
 // Where B goes to 0 the law is the logarithm A_inf B ln(1 + t/tau).
 std::vector<Combination> Ageing::combinations() const {
   return {{"A_inf B", "strength of the logarithm where B is small", ParameterUnit::value, 0, 1, 1},
-          {"B/tau", "growth a unit of time at first", ParameterUnit::per_time, 1, 2, -1}};
+          {"B/tau", "growth per unit of time at first", ParameterUnit::per_time, 1, 2, -1}};
 }
 
 InverseLog::InverseLog()

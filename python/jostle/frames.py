@@ -18,7 +18,7 @@ except ImportError as error:
 
 
 def ensemble_frame(results: ResultsFile, points: Sequence[Point], observables: Sequence[str]) -> pandas.DataFrame:
-    """A row a sweep point and tap that it has come to; all columns where none is named."""
+    """One row per sweep point and tap that it has come to; all columns where none is named."""
     chosen = observables or results.observables
     unknown = [name for name in chosen if name not in results.observables]
     if unknown:

@@ -140,6 +140,18 @@ def _refusals_in(stdout: str) -> str:
     return "\n".join(f"{name}: {notes['refused']}" for name, notes in tables + fits if "refused" in notes)
 
 
+# The advice of the program names its options; callers of this package have arguments.
+_ARGUMENTS = (("with --resume", "with resume=True"), ("with -o FILE", "with output=FILE"),
+              ("to another file with -o.", "to another file with output=FILE."), ("with --force", "with force=True"),
+              ("(--force)", "(force=True)"), ("(--wait DURATION waits longer)", "(wait=DURATION waits longer)"))
+
+
+def _with_arguments(said: str) -> str:
+    for option, argument in _ARGUMENTS:
+        said = said.replace(option, argument)
+    return said
+
+
 def refusal(done: subprocess.CompletedProcess[str]) -> ProgramError:
     """The exception for an exit code."""
     about = {"exit_code": done.returncode, "stderr": done.stderr, "command": done.args}
@@ -150,7 +162,7 @@ def refusal(done: subprocess.CompletedProcess[str]) -> ProgramError:
     said = done.stderr.strip().removeprefix("jostle: ") or _refusals_in(done.stdout) or done.stdout.strip()
     if done.returncode < 0:
         said = f"jostle was killed by {_signal_name(-done.returncode)}. {said}"
-    return ProgramError(said or f"jostle ended with exit code {done.returncode}", **about)
+    return ProgramError(_with_arguments(said) or f"jostle ended with exit code {done.returncode}", **about)
 
 
 def _signal_name(number: int) -> str:

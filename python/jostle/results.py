@@ -135,7 +135,7 @@ class Results(ResultsFile):
         return series(self)
 
     def to_pandas(self, *observables: str) -> pandas.DataFrame:
-        """The ensemble as a table: a row a sweep point and tap, indexed by the axes of the sweep and the
+        """The ensemble as a table: one row per sweep point and tap, indexed by the axes of the sweep and the
         tap; a column each NAME_mean, NAME_sigma, NAME_error, NAME_count, of all or of these. Needs
         pandas."""
         from .frames import ensemble_frame

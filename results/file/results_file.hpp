@@ -91,7 +91,7 @@ class ResultsFile {
   RunState state() const;
   const Shard& shard() const;
   const Study& study() const;
-  const std::vector<Provenance>& provenance() const;  // one a process that worked on it
+  const std::vector<Provenance>& provenance() const;  // one per process that worked on it
   /// Marks this run's parts; random.
   const std::string& run_id() const;
 
@@ -138,6 +138,8 @@ class ResultsFile {
   std::vector<Table> tables(const std::string& group) const;
   /// Names of all derived tables with their group first, in order: "fits/point_0000/...".
   std::vector<std::string> table_names() const;
+  /// Names of the derived tables that hold only the reason why they have no results.
+  std::vector<std::string> tables_without_results() const;
 
  private:
   class Impl;

@@ -222,8 +222,8 @@ std::vector<std::string> store_tables(const std::string& named, std::span<const 
     for (const TableGroup& group : groups) {
       const Hdf5Handle parent = group_at(file, group.name);
       for (const Table& table : group.tables) {
-        if (stored == StoredResults::left && !is_made(table) && has_results(parent, table.name)) {
-          left.push_back(table.name);
+        if (stored == StoredResults::left && !is_made(table)) {
+          if (has_results(parent, table.name)) left.push_back(table.name);
           continue;
         }
         write_table(parent, table, provenance);
@@ -233,7 +233,7 @@ std::vector<std::string> store_tables(const std::string& named, std::span<const 
     update_contents(file, names);
     file.close();
   });
-  if (n_written == 0 && !left.empty()) return left;
+  if (n_written == 0 && stored == StoredResults::left) return left;
   seal(temporary.name());
   temporary.publish();
   return left;
@@ -257,6 +257,21 @@ std::vector<std::string> ResultsFile::table_names() const {
   return naming_file(path(), [&] {
     std::vector<std::string> names;
     const auto name = [&](hid_t, const std::string& table) { names.push_back(table); };
+    Walk walk;
+    for (const std::string group : derived_groups)
+      if (exists(impl_->file(), group))
+        for_each_table(open_group(impl_->file(), group), group, walk, name);
+    std::ranges::sort(names);
+    return names;
+  });
+}
+
+std::vector<std::string> ResultsFile::tables_without_results() const {
+  return naming_file(path(), [&] {
+    std::vector<std::string> names;
+    const auto name = [&](hid_t group, const std::string& table) {
+      if (checked(H5Aexists(group, "note_refused")) > 0) names.push_back(table);
+    };
     Walk walk;
     for (const std::string group : derived_groups)
       if (exists(impl_->file(), group))

@@ -20,7 +20,8 @@ struct TableGroup {
   std::vector<Table> tables;
 };
 
-/// Fate of a table with results when one of its name without any is to be stored.
+/// Fate of a table with results when one of its name without any is to be stored. `left`: tables
+/// without results are not stored at all.
 enum class StoredResults { replaced, left };
 
 /// Puts the tables into `group` of the results file: /<group>/<table name>/<axis or quantity>,

@@ -17,7 +17,8 @@ Recorder::Recorder(std::string results_path, PartIdentity identity, std::size_t 
     : results_path_(std::move(results_path)),
       identity_(std::move(identity)),
       n_columns_(n_columns),
-      part_(std::move(part)) {
+      part_(std::move(part)),
+      work_before_(part_.work) {
   if (part_.n_segments == 0 && part_.tail.rows.empty()) part_.tail.first_row = part_.base_rows;
 }
 
@@ -49,13 +50,20 @@ void Recorder::publish_tail_if_large() {
   ++part_.n_segments;
 }
 
+/// Every call replaces the work that this process reported before.
+void Recorder::set_work(const Work& of_this_process) {
+  part_.work = work_before_;
+  part_.work += of_this_process;
+}
+
 RealizationSummary Recorder::publish_state() {
   write_state(state_path(results_path_, identity_.id), identity_, part_);
   return summary_of(identity_.id, part_);
 }
 
-RealizationSummary Recorder::checkpoint(const RealizationState& state) {
+RealizationSummary Recorder::checkpoint(const RealizationState& state, const Work& work) {
   assert(state.rows == next_row());
+  set_work(work);
   part_.state = state;
   return publish_state();
 }
@@ -63,7 +71,7 @@ RealizationSummary Recorder::checkpoint(const RealizationState& state) {
 RealizationSummary Recorder::end(const RealizationState& state, const Outcome& outcome) {
   part_.status = outcome.status;
   part_.reason = outcome.reason;
-  part_.work += outcome.work;
+  set_work(outcome.work);
   part_.state = state;
   if (outcome.status == RealizationStatus::failed) {
     part_.base_rows = 0;

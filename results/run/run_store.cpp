@@ -328,8 +328,8 @@ void RunStore::snapshot(RealizationId id, const SnapshotRecord& record) {
   impl_->recorder(id).snapshot(record);
 }
 
-void RunStore::checkpoint(RealizationId id, const RealizationState& state) {
-  const RealizationSummary summary = impl_->recorder(id).checkpoint(state);
+void RunStore::checkpoint(RealizationId id, const RealizationState& state, const Work& work) {
+  const RealizationSummary summary = impl_->recorder(id).checkpoint(state, work);
   const std::lock_guard guard(impl_->mutex);
   impl_->in_parts[id] = summary;
 }

@@ -68,7 +68,7 @@ class RunStore : public Sink {
   std::optional<RealizationState> begin(RealizationId id) override;
   void append(RealizationId id, const TapRow& row) override;
   void snapshot(RealizationId id, const SnapshotRecord& record) override;
-  void checkpoint(RealizationId id, const RealizationState& state) override;
+  void checkpoint(RealizationId id, const RealizationState& state, const Work& work) override;
   void end(RealizationId id, const RealizationState& state, const Outcome& outcome) override;
 
   /// Folds everything into a new file in the order of (point, realization), replaces the old one

@@ -62,7 +62,8 @@ ShardState state_of(const RunStatus& status) {
   return status.owner ? ShardState::dead : ShardState::stopped;  // a killed process leaves its lock
 }
 
-/// Finished and remaining work of a sweep point, over all shares.
+/// Finished and remaining work of a sweep point, over all shares. `rows` counts those whose cost
+/// was reported.
 struct PointWork {
   double seconds = 0;
   std::uint64_t rows = 0, rows_left = 0;
@@ -88,7 +89,7 @@ void gather(Gathered& study, const std::string& path, const LiveLook& look) {
     shard.all_taps += taps;
     shard.taps += realization.taps();
     point.seconds += realization.work.seconds;
-    point.rows += realization.rows;
+    if (realization.work.seconds > 0) point.rows += realization.rows;
     if (realization.status == RealizationStatus::done) ++shard.done;
     if (realization.status == RealizationStatus::failed) ++shard.failed;
     const bool ended = realization.status == RealizationStatus::failed;
@@ -157,7 +158,11 @@ void estimate_left(Gathered& study) {
     rows += static_cast<double>(point.rows);
     rows_left += static_cast<double>(point.rows_left);
   }
-  study.status.used = Seconds(seconds);
+  const auto computes = [](const ShardStatus& shard) {
+    return shard.state == ShardState::running || shard.state == ShardState::dead || shard.taps > 0;
+  };
+  if (seconds > 0 || std::ranges::none_of(study.status.shards, computes))
+    study.status.used = Seconds(seconds);
   if (rows == 0 && rows_left > 0) return;
   const double of_any = rows > 0 ? seconds / rows : 0;
   for (const PointWork& point : study.points) {

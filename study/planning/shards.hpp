@@ -37,8 +37,8 @@ struct ShardStatus {
 struct ShardsStatus {
   std::string scene;                // its name
   std::vector<ShardStatus> shards;  // [count], by their indices
-  Seconds used{0};                  // used processors
-  std::optional<Seconds> left;      // estimated of what was done; nothing before the first tap
+  std::optional<Seconds> used;      // used processors; nothing before the first checkpoint
+  std::optional<Seconds> left;      // estimated from recorded taps and their cost; nothing before
   std::vector<std::string> twice;   // files that hold a share another file holds
   std::vector<std::string> unread;  // files that cannot be read: each may hold any missing share
 

@@ -12,4 +12,8 @@ namespace jostle::inline study {
 /// and the overlap of two spheres that meet at the floor's greatest speed. Empty for other engines.
 std::vector<std::string> grain_summary(const Plan& plan);
 
+/// A warning for each tap whose floor is so fast that spheres overlap by as much as lets a
+/// realization fail. Empty for other engines.
+std::vector<std::string> overlap_warnings(const Plan& plan);
+
 }  // namespace jostle::inline study

@@ -51,7 +51,7 @@ class OutputExists : public BadInput {
 /// The results file that is to be resumed was begun with another scene.
 class OtherScene : public BadInput {
  public:
-  /// `differences`: one a line, as fault_lines() writes them.
+  /// `differences`: one per line, as fault_lines() writes them.
   OtherScene(const std::string& path, const std::string& differences);
   const std::string& path() const { return path_; }
   const std::string& differences() const { return differences_; }

@@ -10,6 +10,7 @@
 
 #include "ensemble/statistics/finite_text.hpp"
 #include "study/amounts.hpp"
+#include "study/running/grain_summary.hpp"
 
 namespace jostle::inline study {
 namespace {
@@ -19,6 +20,8 @@ constexpr double largest_angle = 2, largest_degrees = 180;  // theta0 of 1000 me
 constexpr double largest_stretch = 1;                       // twice as high; the papers end at 0.5
 constexpr double largest_lift = 5;                          // diameters; the papers' end at 0.5
 constexpr double large_diameter = 0.5;                      // m
+constexpr double small_density = 20;                        // kg/m^3; 20 g/cm^3 is gold
+constexpr double large_gravity = 300;                       // m/s^2; 30 g
 constexpr double much_disk = 1e12;                          // bytes
 constexpr std::size_t most_warnings = 50;
 
@@ -29,6 +32,7 @@ class Warnings {
     for (const Stage& stage : plan.protocol) {
       std::visit([this](const auto& tap) { look_at_tap(tap); }, stage.tap);
     }
+    for (std::string& warning : overlap_warnings(plan)) add(std::move(warning));
   }
   /// Realizations of a scene without random numbers.
   void look_at_chance(const Plan& plan, std::uint64_t n_realizations) {
@@ -73,9 +77,22 @@ class Warnings {
           "every tap will be",
           rest, engine.most_seconds));
     }
-    if (engine.diameter <= large_diameter) return;
-    add(finite_text("/engine: the diameter is in metres, and {:g} m is a boulder",
-                    engine.diameter));
+    if (engine.diameter > large_diameter) {
+      add(finite_text("/engine: the diameter is in metres, and {:g} m is a boulder",
+                      engine.diameter));
+    }
+    if (engine.density < small_density) {
+      add(
+          finite_text("/engine: the density is in kg/m^3, and {:g} is less than any solid has; "
+                      "{:g} g/cm^3 are {:g}",
+                      engine.density, engine.density, 1000 * engine.density));
+    }
+    if (engine.gravity > large_gravity) {
+      add(
+          finite_text("/engine: gravity is in m/s^2, and {:g} is {:.0f} times that of the Earth; "
+                      "{:g} cm/s^2 are {:g}",
+                      engine.gravity, engine.gravity / 9.81, engine.gravity, engine.gravity / 100));
+    }
   }
   void look_at(const char* key, const Relaxation& relax) {
     const auto* move = std::get_if<PolarMove>(&relax.move);

@@ -233,6 +233,11 @@ class Analyses(Analysed):
         self.assertRegex(refused, "^no sweep point has a value of steady/sigma of mean_height; "
                                   "at sqrt_epsilon = 0.01, 0.02: lower bound of the deviation .*: the taps are too few "
                                   "for their memory. Average over more taps")
+        name = "analysis/sweep/mean_height/steady_sigma"
+        self.assertEqual(self.info("tiny.h5")["tables_without_results"], [name])
+        listed = self.jostle("info", "tiny.h5").stdout
+        self.assertIn(f"/{name}: no result\n", listed)
+        self.assertIn("/analysis/point_0000/steady/mean_height\n", listed)
         shown = self.jostle("analyse", "tiny.h5", "sweep", "--observable", "mean_height", "--quantity", "steady/sigma",
                             expect=BAD_INPUT)
         self.assertNotIn("0 rows", shown.stdout)
@@ -298,6 +303,11 @@ class Analyses(Analysed):
                                "--against", "dilate")["tables"]
         self.assertEqual(by_name, tables)
         self.assertEqual(tables[0]["axes"]["sqrt_epsilon"]["values"], [0.1, 0.2])
+        for key in ("/relax/stop/sweeps", "/seed"):
+            refused = self.jostle("analyse", "crossed.h5", "sweep", "--observable", "bottom_fraction", "--against", key,
+                                  expect=BAD_INPUT).stderr
+            self.assertIn(f'"{key}" is not swept (swept: /protocol/0/tap/dilate, /protocol/0/count, /spheres)',
+                          " ".join(refused.split()))
         self.assertEqual(self.tables("crossed.h5"), ["analysis/sweep/bottom_fraction/value_0000",
                                                      "analysis/sweep/bottom_fraction/value_0001"])
 
@@ -313,9 +323,34 @@ class Analyses(Analysed):
         self.assertEqual(curve["axes"]["sqrt_epsilon"]["values"], [0.1, 0.2, 0.3])
         self.assertTrue(0.4 < min(curve["quantities"]["bottom_fraction"]["values"]) < 0.7)
         self.assertEqual(self.tables("single0.h5"), [])
+        self.jostle("analyse", "single0.h5", "single1.h5", "sweep", "--observable", "bottom_fraction", "--against",
+                    "/protocol/0/tap/dilate")
+        refused = self.jostle("analyse", "single0.h5", "single1.h5", "sweep", "--observable", "bottom_fraction",
+                              "--against", "/spheres", expect=BAD_INPUT).stderr
+        self.assertIn('"/spheres" is not swept (swept: none)', " ".join(refused.split()))
         refused = self.jostle("analyse", "single0.h5", "sweep", "--observable", "mean_height",
                               "--quantity", "kww/tau", expect=BAD_INPUT).stderr
         self.assertIn("make the analysis or the fit first", refused)
+
+    def test_a_request_without_any_result_stores_nothing(self):
+        self.write(TAPPED)
+        self.run_scene()
+        self.jostle("analyse", "tiny.h5", "steady", "--observable", "mean_height")
+        before = (self.folder / "tiny.h5").read_bytes()
+
+        def refused(*arguments, answer):
+            shown = self.jostle("analyse", "tiny.h5", *arguments, expect=BAD_INPUT).stderr
+            self.assertIn(answer, " ".join(shown.split()))
+            self.assertEqual((self.folder / "tiny.h5").read_bytes(), before)
+
+        sweep = ("sweep", "--observable", "mean_height", "--quantity")
+        refused(*sweep, "steady/sigm", answer='Did you mean "steady/sigma"?')
+        refused(*sweep, "stedy/sigma", answer='Did you mean "steady/sigma"?')
+        refused("sweep", "--observable", "mean_hight", "--quantity", "steady/sigma",
+                answer='Did you mean "mean_height"?')
+        refused("sweep", "--observable", "mean_height", "mean_hight", answer='Did you mean "mean_height"?')
+        refused("hysteresis", "--observable", "mean_height", "--last", "1000", answer="no table could be made")
+        refused("memory", "--observable", "mean_height", answer="no table could be made")
 
     def test_several_files_are_each_given_their_tables(self):
         for name in ("a", "b"):

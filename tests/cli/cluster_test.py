@@ -284,6 +284,38 @@ class Status(Case):
         self.run_scene("-o", "whole.h5")
         self.assertEqual(self.digest("all.h5"), self.digest("whole.h5"))
 
+    def test_the_cost_of_a_run_in_progress_is_known_from_its_first_checkpoint_on(self):
+        self.write(SLOW)
+        folder = self.folder / "shards"
+        for every in (3600, 0):
+            running = self.popen("run", "scene.json", "-o", f"shards/{every}.h5", "--checkpoint-every", every)
+            self.addCleanup(running.communicate)
+            self.addCleanup(running.kill)
+            while not (folder / f"{every}.h5").exists():
+                time.sleep(0.01)
+            while not every and self.status("shards/0.h5")["studies"][0]["shards"][0]["taps_recorded"] == 0:
+                time.sleep(0.01)
+            for ended in (False, True):
+                if ended:
+                    running.kill()
+                    running.wait()
+                study = self.status(f"shards/{every}.h5")["studies"][0]
+                text = " ".join(self.jostle("status", f"shards/{every}.h5").stdout.split())
+                summary = " ".join(self.jostle("info", f"shards/{every}.h5").stdout.split())
+                each = json.loads(self.jostle("info", f"shards/{every}.h5", "--json").stdout)["realizations"]
+                if every:
+                    self.assertIsNone(study["core_hours_used"])
+                    self.assertIsNone(study["core_hours_left"])
+                    self.assertIn("those used are not known before the first checkpoint", text)
+                    self.assertIn("those left are not known before the first recorded tap", text)
+                    self.assertIn("no cost is recorded yet", summary)
+                else:
+                    self.assertGreater(study["core_hours_used"], 0)
+                    self.assertGreater(study["core_hours_left"], study["core_hours_used"] / 100)
+                    self.assertRegex(text, r"core-hours\s+\S+ used, about \S+ left")
+                    self.assertRegex(summary, r"[1-9]\S* (M )?trials in \S+ \w+ of one core")
+                    self.assertTrue(any(one["seconds"] > 0 and one["trials"] > 0 for one in each))
+
     def test_damaged_files_and_runs_of_other_scenes_are_told_apart(self):
         for index in (1, 2, 3):
             self.shard(index, 3)

@@ -8,7 +8,7 @@ import unittest
 import h5py
 import numpy as np
 
-from support import BAD_INPUT, BROKEN, EVERY, PORTABLE, STOPPED, UNFOLDED, Case, changed
+from support import BAD_INPUT, BROKEN, EVERY, FAILED, PORTABLE, STOPPED, UNFOLDED, Case, changed
 
 N = 48
 GRAINS = {
@@ -282,6 +282,8 @@ class Grains(Case):
         text = self.jostle("check", "scene.json", "--no-pilot", environment=UNFOLDED).stdout
         self.assertIn("beds fail at 0.2: raise the stiffness", text)
         self.assertIn("is capped after 5 s: every tap will be", text)
+        logged = " ".join(self.run_scene(expect=FAILED).stderr.split())
+        self.assertIn("beds fail at 0.2: raise the stiffness", logged)
         self.assertIn("the pilot failed: a sphere left the container, or overlaps another by more",
                       self.jostle("check", "scene.json", expect=BAD_INPUT).stderr)
 

@@ -128,7 +128,7 @@ class Long(Report):
         self.run_scene()
         page, _ = self.page("tiny.h5")
         run = self.data(page)["files"][0]
-        self.assertIn("curves are drawn at 40 taps a decade, and where they are highest and lowest",
+        self.assertIn("curves are drawn at 40 taps per decade, and where they are highest and lowest",
                       run["left_out"])
         taps = panel_of(run, "mean-height")["series"][0]["x"]
         self.assertEqual(taps, sorted(set(taps)))

@@ -27,7 +27,7 @@ RecordedRealization sunk(std::uint64_t units, bool kills) {
   for (int slices = 1; !realization->finished(); ++slices) {
     append(sink, realization->advance(units));
     if (!kills || slices % 3 != 0) continue;
-    sink.checkpoint(first, realization->state());
+    sink.checkpoint(first, realization->state(), {});
     realization = std::make_unique<Realization>(plan, 0, sinking(plan, 0), sink.begin(first));
   }
   sink.end(first, realization->state(), {});
@@ -75,7 +75,7 @@ TEST_CASE("A state of another engine is refused, and what is stored of the reali
       Catch::Contains("another engine") && Catch::Contains("resume with the version"));
 
   MemorySink sink;
-  sink.checkpoint(first, second.state());
+  sink.checkpoint(first, second.state(), {});
   Progress progress;
   CHECK_THROWS_AS(run_ensemble(std::span(&plan, 1), {first}, {}, sink, progress), StateError);
   const RecordedRealization& record = sink.records().at(first);

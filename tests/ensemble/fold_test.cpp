@@ -22,7 +22,7 @@ class FoldingSink : public Sink {
   std::optional<RealizationState> begin(RealizationId) override { return std::nullopt; }
   void append(RealizationId id, const TapRow& row) override { block_.set(id.realization, row); }
   void snapshot(RealizationId, const SnapshotRecord&) override {}
-  void checkpoint(RealizationId, const RealizationState&) override {}
+  void checkpoint(RealizationId, const RealizationState&, const Work&) override {}
   void end(RealizationId, const RealizationState&, const Outcome&) override {}
 
  private:

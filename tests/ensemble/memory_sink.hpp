@@ -16,6 +16,7 @@ struct RecordedRealization {
   std::optional<RealizationState> state;  // state of the last checkpoint or the end
   std::optional<Outcome> outcome;
   unsigned checkpoints = 0;
+  Work work{};  // the last checkpoint has it
 
   // Durable rows: appended before the last checkpoint.
   std::size_t durable_rows = 0, durable_snapshots = 0;
@@ -47,10 +48,11 @@ class MemorySink : public Sink {
     const std::scoped_lock lock(mutex_);
     records_[id].snapshots.push_back(snapshot);
   }
-  void checkpoint(RealizationId id, const RealizationState& state) override {
+  void checkpoint(RealizationId id, const RealizationState& state, const Work& work) override {
     on_call(id, "checkpoint");
     const std::scoped_lock lock(mutex_);
     ++records_[id].checkpoints;
+    records_[id].work = work;
     keep(records_[id], state);
   }
   void end(RealizationId id, const RealizationState& state, const Outcome& outcome) override {

@@ -26,7 +26,7 @@ class RacySink : public Sink {
   }
   void append(RealizationId, const TapRow&) override { ++rows_; }
   void snapshot(RealizationId, const SnapshotRecord&) override {}
-  void checkpoint(RealizationId, const RealizationState&) override {}
+  void checkpoint(RealizationId, const RealizationState&, const Work&) override {}
   void end(RealizationId, const RealizationState&, const Outcome&) override {}
 
  private:

@@ -243,7 +243,8 @@ TEST_CASE("No more realizations are alive than threads, and progress counts the 
     if (std::string_view(call) == "end") --alive;
   };
   Progress progress;
-  run_ensemble(plans, ids, {.threads = 3}, sink, progress);
+  run_ensemble(plans, ids, {.threads = 3, .checkpoint_every = std::chrono::seconds(0)}, sink,
+               progress);
   CHECK(most <= 3);
 
   std::uint64_t trials = 0, tests = 0;
@@ -254,6 +255,12 @@ TEST_CASE("No more realizations are alive than threads, and progress counts the 
           monte_carlo_state(record.state->engine).move.next_trial);
     CHECK(record.outcome->work.start_seconds > 0);
     CHECK(record.outcome->work.start_seconds < record.outcome->work.seconds);
+    REQUIRE(record.checkpoints > 0);
+    CHECK(record.work.seconds > record.work.start_seconds);
+    CHECK(record.work.seconds < record.outcome->work.seconds);
+    CHECK(record.work.start_seconds == record.outcome->work.start_seconds);
+    CHECK(record.work.effort.units > 0);
+    CHECK(record.work.effort.units < record.outcome->work.effort.units);
   }
   CHECK(progress.units_done == trials);
   CHECK(progress.pair_tests == tests);

@@ -1,6 +1,7 @@
 #include "fitting/summary.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 namespace jostle {
 namespace {
@@ -45,6 +46,20 @@ TEST_CASE("A summary has one interval for the asymptotes of all laws that are no
   CHECK(found.choice ==
         "a predicts held-out realizations better than b (p = 0.4) and c (p = 0.01)");
   CHECK(found.asymptote == "X_inf 0.6000(50), 95 %: 0.58 to 0.62 (a)");
+}
+
+TEST_CASE("A summary reports an asymptote without a value in words, with its limits") {
+  std::vector<Fit> fits = {fit_with_asymptote("a", {-INFINITY, 0.62})};
+  Estimate& asymptote = fits[0].estimates[0];
+  asymptote.intervals[0] = {-INFINITY, 0.605};
+  asymptote.identifiability = Identifiability::bounded_above;
+  REQUIRE_FALSE(asymptote.has_value());
+  CHECK(summary(fits, {}, {"d", "taps"}).asymptote == "X_inf has no value, 95 %: < 0.62 d");
+  asymptote.intervals[1] = {-INFINITY, INFINITY};
+  CHECK(summary(fits, {}, {}).asymptote == "X_inf has no limit on either side");
+  asymptote.identifiability = Identifiability::not_examined;
+  asymptote.standard_error = 1e20;
+  CHECK(summary(fits, {}, {}).asymptote == "X_inf has no value");
 }
 
 TEST_CASE("A summary has the most severe warning of the laws that are not rejected") {

@@ -94,7 +94,10 @@ class Run(Case):
     def test_other_errors_carry_what_the_program_said(self):
         self.run_scene(SHORT)
         for ask, code, pattern in (
-                (lambda: jostle.run(SHORT), 2, "tiny.h5 exists and is kept"),
+                (lambda: jostle.run(SHORT), 2,
+                 "tiny.h5 exists and is kept. Go on with it with resume=True, write elsewhere with output=FILE, or "
+                 "replace it with force=True"),
+                (lambda: jostle.run(changed(SHORT, seed=5), resume=True), 2, "another file with output=FILE"),
                 (lambda: jostle.run("none.json"), 2, "cannot read the scene: none.json"),
                 (lambda: jostle.fit("tiny.h5", "height"), 2, "there is none; tiny.h5 has mean_height"),
                 (lambda: jostle.run(SHORT, "no/such/folder.h5"), 4, "no/such")):

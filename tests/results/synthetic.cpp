@@ -127,7 +127,7 @@ class Rows : public Sink {
   std::optional<RealizationState> begin(RealizationId) override { return std::nullopt; }
   void append(RealizationId, const TapRow& row) override { rows.push_back(row); }
   void snapshot(RealizationId, const SnapshotRecord&) override {}
-  void checkpoint(RealizationId, const RealizationState&) override {}
+  void checkpoint(RealizationId, const RealizationState&, const Work&) override {}
   void end(RealizationId, const RealizationState&, const Outcome&) override {}
 
   std::vector<TapRow> rows;
@@ -194,7 +194,8 @@ void run(Sink& sink, const Study& study, RealizationId id, const Conduct& conduc
     state.relaxing = true;
     step(state);
     if (engine_of(state).steps == steps_a_tap) record(sink, point, id, state);
-    if (++steps % conduct.checkpoint_every == 0) sink.checkpoint(id, state);
+    if (++steps % conduct.checkpoint_every == 0)
+      sink.checkpoint(id, state, {0.0625 * double(steps), 0.03125, {steps, 0}});
   }
   sink.end(id, state, {RealizationStatus::done, "", {0.5, 0.25, {steps, 2 * steps}}});
 }

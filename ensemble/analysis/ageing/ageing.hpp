@@ -15,8 +15,8 @@ struct AgeingGrid {
   std::vector<std::uint64_t> lags;           // t, ascending, all at least 1
 };
 
-/// For a series of `n_taps` rows (at least 3): ten lags a decade up to its end, waiting times 0 and
-/// two a decade up to a tenth of it.
+/// For a series of `n_taps` rows (at least 3): ten lags per decade up to its end, waiting times 0
+/// and two per decade up to a tenth of it.
 AgeingGrid ageing_grid(std::uint64_t n_taps);
 
 /// Every tap that enters the two-time functions, ascending.

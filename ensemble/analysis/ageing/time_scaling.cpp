@@ -221,7 +221,7 @@ AgeingExponent no_exponent(const AgeTrend& collapse) {
           not_a_number,
           not_a_number,
           not_a_number,
-          "no mu: " + collapse.verdict,
+          "mu has no estimate; " + collapse.verdict,
           collapse};
 }
 

@@ -79,7 +79,7 @@ AgeTrend agreed(const AgeTrend& first, const AgeTrend& second, std::size_t reali
   found.verdict = verdict(found, found.detectable <= decisive && !finds(first) && !finds(second),
                           realizations, words);
   if (finds(first) != finds(second)) {
-    found.verdict += fmt::format("; one of the two tests rejects, {}",
+    found.verdict += fmt::format("; only one of the two tests rejects that nothing changes, {}",
                                  plain_p_text(std::min(first.p, second.p)));
   }
   return found;

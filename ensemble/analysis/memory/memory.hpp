@@ -20,7 +20,7 @@ struct LagWindow {
   std::uint64_t first = 1, last = 1;
 };
 
-/// 1, 2 to 3, 4 to 10, 11 to 30, ...: two windows a decade of lags, up to the last, which may end
+/// 1, 2 to 3, 4 to 10, 11 to 30, ...: two windows per decade of lags, up to the last, which may end
 /// within one. last >= 1.
 std::vector<LagWindow> lag_windows(std::uint64_t last);
 /// Like the function above, with windows that end at these lags, ascending, at least 1.

@@ -59,7 +59,7 @@ struct RealizationMean {
   ErrorOf error{};
 };
 /// How fast X grows: lines by least squares through taps 1 to n - 1 of each realization. On log10
-/// t, decades weighing alike (1/t a tap), in units of X a decade; and on t, units of X a tap.
+/// t, decades weighing alike (1/t per tap), in units of X per decade; and on t, units of X per tap.
 struct GrowthRates {
   RealizationMean per_decade, per_tap;
 };

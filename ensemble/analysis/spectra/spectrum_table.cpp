@@ -7,6 +7,7 @@
 
 #include "ensemble/analysis/analyses.hpp"
 #include "ensemble/analysis/steady_state.hpp"
+#include "ensemble/statistics/counted.hpp"
 #include "ensemble/statistics/finite_text.hpp"
 
 namespace jostle::inline ensemble {
@@ -183,8 +184,9 @@ Table SpectrumAnalysis::table() const {
                  {"realizations", fmt::to_string(spectrum.realizations)},
                  {"window", name_of(options_.window)},
                  {"detrending", name_of(options_.detrending)},
-                 {"segments", fmt::format("{} of {} taps, {} shared with the next",
-                                          spectrum.segments, options_.segment, options_.overlap)},
+                 {"segments", fmt::format("{} of {} taps each; neighbours share {} taps",
+                                          counted(spectrum.segments, "segment"), options_.segment,
+                                          options_.overlap)},
                  {"band", finite_text("{:.4g} to {:.4g} per tap, {} points", band.lowest,
                                       band.highest, slope.n_points)},
                  {"drift", drift_verdict(trend, options_.detrending)},

@@ -280,12 +280,12 @@ CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps
         fmt::format("cannot decide: {}; no disagreement, however large, would be found", tests);
   } else if (!(verdict.detectable <= CompactivityVerdict::largest_unseen)) {
     verdict.statement = finite_text(
-        "cannot decide: {}; only a disagreement of {:.2g} of a step of 1/X or more would have been "
-        "found with 80 %",
+        "cannot decide: {}; the smallest disagreement detected with 80 % power is {:.2g} steps of "
+        "1/X",
         tests, verdict.detectable);
   } else {
     verdict.statement = finite_text(
-        "agree: {}; a disagreement of {:.2g} of a step of 1/X would have been found with 80 %",
+        "agree: {}; the smallest disagreement detected with 80 % power is {:.2g} steps of 1/X",
         tests, verdict.detectable);
   }
   return verdict;

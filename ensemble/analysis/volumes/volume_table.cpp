@@ -117,7 +117,7 @@ void add_states(const Column& observable, const std::string& control, const std:
   columns.add_variances("variance", variances, squared,
                         "variance over taps and realizations together, about their common mean; "
                         "the jackknife of its logarithm removes the bias");
-  columns.add("volume", volumes, "sphere volumes", "volume a sphere, V/N");
+  columns.add("volume", volumes, "sphere volumes", "volume per sphere, V/N");
   columns.add_variances("volume_variance", volume_variances, "sphere volumes^2",
                         "variance of V over N, which does not depend on N where parts of a bed "
                         "are independent");

@@ -45,7 +45,7 @@ def fit(table: Table, *, ax: Axes | None = None) -> Axes:
 
 @takes_arguments
 def ageing(table: Table, *, scaled: bool = False, ax: Axes | None = None) -> Axes:
-    """A(t, t_W) against the lag, a curve a waiting time, with 68 % intervals. scaled: A/A_inf against
+    """A(t, t_W) against the lag, one curve per waiting time, with 68 % intervals. scaled: A/A_inf against
     t/tau of the shared law, where the realizations found one."""
     names = "scaled_lag scaled_a scaled_a_error" if scaled else "a a_low_68 a_high_68"
     _require(table, f"waiting_time lag {names}", "jostle analyse ageing")

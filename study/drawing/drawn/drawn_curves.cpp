@@ -24,7 +24,7 @@ std::vector<Value> at_places(const std::vector<Value>& values,
   return chosen;
 }
 
-/// Taps of a curve that are drawn: a decade, and evenly.
+/// Numbers of taps of a curve that are drawn: per decade, and evenly.
 struct CurveGrid {
   std::size_t per_decade, evenly;
   std::vector<std::size_t> taps(std::size_t n) const {
@@ -208,7 +208,7 @@ std::vector<DrawnCurve> drawn_curves(const ResultsFile& file, const DrawnRoom& a
   }
   if (thinned_taps) {
     left_out.push_back(fmt::format(
-        "curves are drawn at {} taps a decade{}, and where they are highest and lowest",
+        "curves are drawn at {} taps per decade{}, and where they are highest and lowest",
         grid->per_decade, changing ? fmt::format(" and {} evenly spread ones", grid->evenly) : ""));
   }
   return curves;

@@ -31,7 +31,9 @@ constexpr std::pair<std::string_view, std::string_view> letters[] = {
 constexpr std::pair<std::string_view, std::string_view> signs[] = {
     {"<Z>", "⟨Z⟩"},
     {"Solids fraction", "Packing fraction"},
-    {"solids fraction", "packing fraction"}};
+    {"solids fraction", "packing fraction"},
+    {"energy a sphere", "energy per sphere"},
+    {"force a sphere", "force per sphere"}};
 
 /// "^2" and "^3" after a letter, a digit or a bracket, where no further digit follows.
 void replace_powers(std::string& text) {

@@ -22,7 +22,7 @@ std::vector<Value> spread(const std::vector<Value>& values, std::size_t most) {
   return chosen;
 }
 
-/// Indices out of 0 .. n - 1, ascending: 0, the last, `per_decade` a decade in equal steps of the
+/// Indices out of 0 .. n - 1, ascending: 0, the last, so many per decade in equal steps of the
 /// logarithm, and `evenly` in equal steps, so that neither an early nor a late change is lost.
 std::vector<std::size_t> logarithmically_spread(std::size_t n, std::size_t per_decade,
                                                 std::size_t evenly);

@@ -14,7 +14,7 @@ FigurePanel measured_ageing(const TableView& table) {
   return {.title = fmt::format("Ageing of {}, as measured", words(table.path().back())),
           .caption =
               "A(t, t_W) = ⟨(X(t_W+t) − X(t_W))²⟩ over realizations against the lag t, one "
-              "curve a waiting time t_W; bars are 68 % intervals.",
+              "curve per waiting time t_W; bars are 68 % intervals.",
           .source = table.source("a").empty() ? "Philippe & Bideau 2001, eq. 5" : table.source("a"),
           .x = {"lag t (taps)", AxisKind::logarithmic},
           .y = {"A(t, t_W)" + unit_text(table.units("a")), AxisKind::logarithmic},

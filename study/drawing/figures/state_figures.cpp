@@ -17,7 +17,7 @@ FigurePanel compactivity(const TableView& table) {
           "1/X less that of the first steady state, X the compactivity, against the mean "
           "volume of the states; bars are 68 % intervals.",
       .source = table.source("inverse_x_fluctuations"),
-      .x = {"volume a sphere" + unit_text(table.units("volume"))},
+      .x = {"volume per sphere" + unit_text(table.units("volume"))},
       .y = {"Δ(1/X)" + unit_text(table.units("inverse_x_fluctuations"))},
       .rules = {{.y = 0}}};
   for (const auto& [name, label] :
@@ -51,10 +51,10 @@ std::vector<FigureRow> rows_between(const std::vector<double>& xs, const TableVi
 FigurePanel variances(const TableView& table) {
   return {.title = "Variance of the volume, by " + words(table.path().back()),
           .caption =
-              "Variance of a bed's volume a sphere of each state, over taps and "
+              "Variance of a bed's volume per sphere of each state, over taps and "
               "realizations, against its mean; bars are 68 % intervals.",
           .source = table.source("volume_variance"),
-          .x = {"volume a sphere" + unit_text(table.units("volume"))},
+          .x = {"volume per sphere" + unit_text(table.units("volume"))},
           .y = {"variance" + unit_text(table.units("volume_variance"))},
           .series = {{.name = "",
                       .colour = kind_colour(0),

@@ -42,10 +42,26 @@ bool is_word(const std::string& name) {
   return words.size() == 1 && words[0].text == name;
 }
 
+bool is_parameter(const FormulaName& name) {
+  return !name.is_function && name.text != "t" && name.text != "pi" &&
+         !contains(functions_of_laws(), name.text);
+}
+
+// Throws BadInput for a formula of known functions that cannot be read.
+void require_readable(const std::string& formula) {
+  std::vector<std::string> parameters;
+  for (const FormulaName& name : names_in(formula)) {
+    if (name.is_function != contains(functions_of_laws(), name.text)) return;
+    if (is_parameter(name)) parameters.push_back(name.text);
+  }
+  const LawFormula read(formula, parameters);
+}
+
 std::vector<std::string> faults_of_the_formula(const OwnLaw& law) {
   std::vector<std::string> faults;
   const std::vector<std::string> known = functions_of_laws(), parameters = names_of(law);
   bool has_t = false;
+  std::vector<std::string> without_start;
   for (const FormulaName& name : names_in(law.formula)) {
     if (name.is_function && !contains(known, name.text)) {
       faults.push_back(fmt::format("there is no function {}; there are {}{}", name.text,
@@ -56,12 +72,20 @@ std::vector<std::string> faults_of_the_formula(const OwnLaw& law) {
     } else if (!name.is_function && contains(known, name.text)) {
       faults.push_back(
           fmt::format("the function {0} needs parentheses with its argument: {0}(...)", name.text));
-    } else if (!name.is_function && name.text != "pi" && !contains(parameters, name.text)) {
-      faults.push_back(
-          fmt::format("the parameter {0} has no start: give a value, as {0}=1, from "
-                      "which the search begins",
-                      name.text));
+    } else if (is_parameter(name) && !contains(parameters, name.text)) {
+      without_start.push_back(name.text);
     }
+  }
+  if (without_start.size() == 1) {
+    faults.push_back(
+        fmt::format("the parameter {0} has no start: give a value, as {0}=1, from "
+                    "which the search begins",
+                    without_start[0]));
+  } else if (!without_start.empty()) {
+    faults.push_back(
+        fmt::format("the parameters {} have no start: give values, as {}=1, from which the search "
+                    "begins",
+                    listed(without_start), fmt::join(without_start, "=1,")));
   }
   if (!has_t) faults.push_back("there is no t in it: a law is a function of t");
   return faults;
@@ -73,7 +97,7 @@ std::vector<std::string> faults_of_the_names(const OwnLaw& law) {
   for (const FormulaName& name : names_in(law.formula)) {
     if (!name.is_function) words.push_back(name.text);
   }
-  if (law.start.empty()) {
+  if (law.start.empty() && std::ranges::none_of(names_in(law.formula), is_parameter)) {
     faults.push_back("it has no parameter to fit: name at least one, with its start");
   }
   std::set<std::string> seen;
@@ -102,9 +126,10 @@ std::vector<std::string> faults_of_the_names(const OwnLaw& law) {
     }
   }
   if (!is_word(law.name) || make_model(law.name) || law.name == "all") {
-    faults.push_back(fmt::format(
-        "the law cannot be called \"{}\": a word that is no law's name of docs/reference/laws.md",
-        law.name));
+    faults.push_back(fmt::format("the law cannot be called \"{}\": {}", law.name,
+                                 is_word(law.name)
+                                     ? "docs/reference/laws.md uses this name; choose another"
+                                     : "a name has letters, digits and _, a letter first"));
   }
   return faults;
 }
@@ -245,6 +270,7 @@ std::vector<ParameterValues> FormulaModel::starts(const Curve& curve, std::span<
 }  // namespace
 
 std::unique_ptr<Model> make_own_law(const OwnLaw& law) {
+  require_readable(law.formula);
   std::vector<std::string> faults = faults_of_the_formula(law);
   for (std::string& fault : faults_of_the_names(law)) faults.push_back(std::move(fault));
   if (!faults.empty()) {

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "config/json/json_text.hpp"
+#include "config/json/suggestion.hpp"
 #include "engine/numbers.hpp"
 #include "ensemble/analysis/analyses.hpp"
 #include "fitting/fit.hpp"
@@ -148,6 +150,60 @@ void set_steadiness(const Table& table, DerivedValue& value) {
                                                       : Verdict::cannot_decide;
 }
 
+void add_parameters(const Table& fit, const std::string& prefix, const std::string& law,
+                    std::vector<std::string>& names) {
+  for (const Quantity& axis : fit.axes) {
+    const auto* parameters = std::get_if<std::vector<std::string>>(&axis.values);
+    if (axis.name != prefix + "parameter" || !parameters) continue;
+    for (const std::string& parameter : *parameters) names.push_back(law + "/" + parameter);
+  }
+}
+
+/// All quantities that derived_value() finds: "steady/sigma", "kww/rho_inf".
+std::vector<std::string> quantities_of(const MadeTables& tables, std::uint32_t point,
+                                       const std::string& observable) {
+  const auto is_beside_a_value = [](const std::string& name) {
+    return name.ends_with("_error") || name.ends_with("_dof");
+  };
+  std::vector<std::string> names;
+  for (const Table& table : tables.analyses) {
+    const std::string first = point_name(point) + "/", last = "/" + observable;
+    if (!table.name.starts_with(first) || !table.name.ends_with(last)) continue;
+    const std::string kind =
+        table.name.substr(first.size(), table.name.size() - first.size() - last.size());
+    for (const Quantity& quantity : table.quantities)
+      if (quantity.axes.empty() && !is_beside_a_value(quantity.name) &&
+          std::holds_alternative<std::vector<double>>(quantity.values))
+        names.push_back(kind + "/" + quantity.name);
+  }
+  for (const Table& table : tables.fits) {
+    const std::string first = fmt::format("{}/{}/", point_name(point), observable);
+    if (!table.name.starts_with(first)) continue;
+    add_parameters(table, "", table.name.substr(first.size()), names);
+    add_parameters(table, restated_prefix, note_of(table, "restated_model"), names);
+  }
+  std::ranges::sort(names);
+  const auto repeated = std::ranges::unique(names);
+  names.erase(repeated.begin(), repeated.end());
+  return names;
+}
+
+/// The error for a quantity that no table has, with those of its analysis or law that there are.
+BadInput not_kept(const MadeTables& tables, std::uint32_t point, const std::string& observable,
+                  const std::string& quantity) {
+  const std::vector<std::string> kept = quantities_of(tables, point, observable);
+  std::vector<std::string> of_kind = kept;
+  std::erase_if(of_kind, [&](const std::string& name) {
+    return !name.starts_with(quantity.substr(0, quantity.find('/') + 1));
+  });
+  const std::string fault =
+      fmt::format("{} of {} is not kept for sweep point {}", quantity, observable, point);
+  if (kept.empty()) return BadInput(fault + ": make the analysis or the fit first");
+  return BadInput(fmt::format(
+      "{}; it has {}{}.{}", fault, joined(of_kind.empty() ? kept : of_kind, ", "),
+      of_kind.empty() ? ": make the analysis or the fit first" : "", did_you_mean(quantity, kept)));
+}
+
 }  // namespace
 
 std::optional<ParameterPoint> parameter_point(const Table& fit, const std::string& name) {
@@ -178,9 +234,7 @@ DerivedValue derived_value(const MadeTables& tables, std::uint32_t point,
     if (!is_restated_as(table, kind)) continue;
     if (auto found = parameter(table, name, restated_prefix)) return *std::move(found);
   }
-  throw BadInput(
-      fmt::format("{} of {} is not kept for sweep point {}: make the analysis or the fit first",
-                  quantity, observable, point));
+  throw not_kept(tables, point, observable, quantity);
 }
 
 }  // namespace jostle::inline study

@@ -278,6 +278,24 @@ class SweptFile {
   bool kept_are_read_ = false;
 };
 
+/// Throws BadInput for a pointer to a value that is not swept and is the same at all points: the
+/// curve would be one point.
+void require_swept(std::span<const Member> members, const std::string& against) {
+  if (!against.starts_with('/')) return;  // a name is one of what is swept
+  std::vector<std::string> swept;
+  for (const Member& member : members) {
+    if (member.place.x != members.front().place.x) return;
+    for (const auto& [pointer, value] : member.file->study().points[member.point].sweep_values) {
+      const bool is_within =
+          (pointer + "/").starts_with(against + "/") || (against + "/").starts_with(pointer + "/");
+      if (is_within) return;
+      if (std::ranges::find(swept, pointer) == swept.end()) swept.push_back(pointer);
+    }
+  }
+  throw BadInput(fmt::format("\"{}\" is not swept (swept: {})", against,
+                             swept.empty() ? "none" : joined(swept, ", ")));
+}
+
 std::vector<Member> members_of(std::span<SweptFile> files,
                                const AnalysisRequest<SweepSettings>& request) {
   const auto& [observable, settings] = request;
@@ -307,6 +325,7 @@ std::vector<Member> members_of(std::span<SweptFile> files,
   }
   if (std::ranges::all_of(members, [](const Member& member) { return member.reached.rows == 0; }))
     throw BadInput("no realization has taps, at any sweep point");
+  require_swept(members, settings.against);
   return members;
 }
 
@@ -355,6 +374,8 @@ std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const
         if (!order[i].empty()) table.notes.emplace_back("at", order[i]);
         tables.push_back(std::move(table));
       }
+    } catch (const BadArgument&) {
+      throw;
     } catch (const BadInput& refusal) {
       tables.push_back({.name = name, .notes = {{"refused", refusal.what()}}});
     }

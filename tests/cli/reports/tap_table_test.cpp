@@ -79,7 +79,7 @@ TEST_CASE("One realization of many is marked at every tap, and has no deviation"
         "  1  1       3.7524      -\n");
 }
 
-TEST_CASE("Reported taps are about three a decade, with both ends") {
+TEST_CASE("Reported taps are about three per decade, with both ends") {
   CHECK(reported_taps(0) == std::vector<std::uint64_t>{0});
   CHECK(reported_taps(1) == std::vector<std::uint64_t>{0, 1});
   CHECK(reported_taps(50) == std::vector<std::uint64_t>{0, 1, 2, 5, 10, 20, 50});

@@ -65,6 +65,28 @@ TEST_CASE("a live run shows the taps of its last checkpoints, and nothing is tou
   ::unsetenv("TMPDIR");
 }
 
+TEST_CASE("a checkpoint stores the work of its process beside that of earlier ones") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "live.h5";
+  const Study study = synthetic::study();
+  const auto reported = [&](std::size_t i) { return run_status(path).realizations.at(i).work; };
+  {
+    const auto store = RunStore::create(path, study, {}, provenance());
+    synthetic::run(*store, study, {0, 0}, {.steps = 5, .leave_without_end = true});
+    CHECK(reported(0).seconds == 4 * 0.0625);
+    CHECK(reported(0).start_seconds == 0.03125);
+    CHECK(reported(0).effort.units == 4);
+    CHECK(reported(1).seconds == 0);
+    CHECK(live_results(path).realizations()[0].work.seconds == 4 * 0.0625);
+  }
+  const auto store = RunStore::resume(path, study, {}, provenance());
+  synthetic::run(*store, study, {0, 0}, {.steps = 5, .leave_without_end = true});
+  CHECK(reported(0).seconds == 8 * 0.0625);
+  CHECK(reported(0).effort.units == 8);
+  synthetic::run(*store, study, {0, 0});
+  CHECK(reported(0).seconds == 8 * 0.0625 + 0.5);
+}
+
 TEST_CASE("a live run that was resumed shows its old taps and its new ones") {
   const TemporaryFolder folder;
   const std::string path = folder / "live.h5";

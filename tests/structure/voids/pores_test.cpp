@@ -133,7 +133,7 @@ TEST_CASE("Pores of close-packed crystals are their sites") {
       const Packing packing = with_noise(crystal, noise);
       const auto all = pores(packing, voronoi_cells(packing), 1e-6 + 60 * noise);
       const auto sites = count_sites(all, 1e-9 + 10 * noise);
-      // Two tetrahedral sites and an octahedral one a sphere.
+      // Two tetrahedral sites and an octahedral one per sphere.
       CHECK(sites.at(Site::tetrahedral) == 1000);
       CHECK(sites.at(Site::octahedral) == 500);
       CHECK(sites.count(Site::irregular) == 0);

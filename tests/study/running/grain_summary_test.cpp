@@ -35,7 +35,8 @@ TEST_CASE("The summary of grains agrees with a calculation by hand") {
           !Contains("stiffness"));
 }
 
-// Two spheres of 4 d have 64 times the mass: sqrt(64) / 4 = 2 times the overlap over their diameter.
+// Two spheres of 4 d have 64 times the mass: sqrt(64) / 4 = 2 times the overlap over their
+// diameter.
 TEST_CASE("Overlaps in a mixture are judged by the diameters of the spheres that meet") {
   Plan plan = grains({{HalfSine{0.4413, 7.5}, 10}});
   plan.container = PeriodicBox{10, 10};
@@ -59,9 +60,17 @@ TEST_CASE("Equal taps are listed once, too many are counted, too fast ones warne
   const auto lines = grain_summary(grains(ramp));
   REQUIRE(lines.size() == 7);
   CHECK(lines.back() == "... and 4 more taps");
-  const auto fast = grain_summary(grains({{Vibration{0.48, 1000, 4}, 1}}));
-  CHECK_THAT(fast.at(1), Contains("beds fail at 0.2: raise the stiffness"));
+  const Plan fast = grains({{Vibration{0.48, 1000, 4}, 1}, {Vibration{0.48, 1000, 4}, 2}});
+  const auto warnings = overlap_warnings(fast);
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], Contains("beds fail at 0.2: raise the stiffness"));
+  // 4 times 60.3 m/s * sqrt(5.0265e-3 / 2e5) / 0.02 m.
+  CHECK_THAT(warnings[0],
+             Contains("amplitude 0.48 d and frequency 1000 Hz") && Contains("up to some 1.9 d"));
+  CHECK_THAT(grain_summary(fast).at(1), Contains("and up to some 1.9 in beds"));
+  CHECK(overlap_warnings(grains({{HalfSine{0.4413, 7.5}, 10}, {Dilate{0.1}, 1}})).empty());
   Plan monte_carlo = grains({{Dilate{0.1}, 5}});
   monte_carlo.engine = MonteCarlo{};
   CHECK(grain_summary(monte_carlo).empty());
+  CHECK(overlap_warnings(monte_carlo).empty());
 }

@@ -92,6 +92,34 @@ TEST_CASE("Angles in degrees, boulders and rests beyond the cap are warned of") 
   CHECK_THAT(scene_warnings(scene_of(plan)).at(0), Contains("every tap will be"));
 }
 
+TEST_CASE("Densities and accelerations in units of the CGS system are warned of") {
+  Plan plan;
+  const auto warnings = [&](double density, double gravity) {
+    DiscreteElement grains;
+    grains.density = density;
+    grains.gravity = gravity;
+    plan.engine = grains;
+    return scene_warnings(scene_of(plan));
+  };
+  CHECK(warnings(1200, 9.81).empty());
+  CHECK(warnings(30, 1.62).empty());
+  REQUIRE(warnings(2.5, 9.81).size() == 1);
+  CHECK_THAT(warnings(2.5, 9.81)[0],
+             Contains("in kg/m^3, and 2.5 is less") && Contains("2.5 g/cm^3 are 2500"));
+  REQUIRE(warnings(1200, 981).size() == 1);
+  CHECK_THAT(warnings(1200, 981)[0], Contains("in m/s^2, and 981 is 100 times that of the Earth") &&
+                                         Contains("981 cm/s^2 are 9.81"));
+}
+
+TEST_CASE("Floors that are too fast for the stiffness are warned of") {
+  Plan plan;
+  plan.engine = DiscreteElement{};
+  plan.protocol = {{HalfSine{3, 30}, 10}};
+  const auto warnings = scene_warnings(scene_of(plan));
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], StartsWith("/protocol: ") && Contains("raise the stiffness"));
+}
+
 TEST_CASE("At most fifty warnings are listed, and terabytes of results are one") {
   std::vector<Stage> ramp;
   for (int i = 1; i <= 60; ++i) ramp.push_back({Dilate{1.0 + i}, 1});

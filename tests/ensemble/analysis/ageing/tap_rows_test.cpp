@@ -24,7 +24,7 @@ TEST_CASE("Logarithmic taps are whole, ascend, and keep both ends") {
     CHECK(std::ranges::is_sorted(taps, std::ranges::less_equal{}));
   }
   CHECK(logarithmic_taps(10, 1000, 1) == std::vector<std::uint64_t>{10, 100, 1000});
-  // Above 100 taps nothing is rounded together: ten a decade.
+  // Above 100 taps nothing is rounded together: ten per decade.
   const std::vector<std::uint64_t> taps = logarithmic_taps(100, 100000, 10);
   CHECK(taps.size() == 31);
   for (std::size_t i = 1; i < taps.size(); ++i) {

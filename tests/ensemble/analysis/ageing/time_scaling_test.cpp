@@ -159,7 +159,8 @@ TEST_CASE("Many realizations give mu and words, one age or two give none") {
   const LogCurves curves = curves_of(3, 20, power(0.6));
   const AgeingExponent none = ageing_exponent(curves, {0, 0, 1000}, "a");
   CHECK(std::isnan(none.mu));
-  CHECK(none.verdict == "no mu: cannot decide: fewer than two waiting times above 0 have curves");
+  CHECK(none.verdict ==
+        "mu has no estimate; cannot decide: fewer than two waiting times above 0 have curves");
   CHECK(!std::isnan(ageing_exponent(curves, {0, 100, 1000}, "a").low_95));
   CHECK(logarithmic_collapse(curves, {1, 1, 1000}, "a").verdict ==
         "cannot decide: fewer than two waiting times above 1 have curves");
@@ -167,7 +168,7 @@ TEST_CASE("Many realizations give mu and words, one age or two give none") {
   CHECK(logarithmic_collapse(three, ages, "a").verdict ==
         "cannot decide: the logarithms need 4 realizations");
   CHECK(ageing_exponent(three, ages, "a").verdict ==
-        "no mu: cannot decide: mu needs 4 realizations");
+        "mu has no estimate; cannot decide: mu needs 4 realizations");
 }
 
 TEST_CASE("mu has a value where it is limited on both sides, within the range of the search") {
@@ -227,7 +228,7 @@ TEST_CASE("Curves with no more points than F has parameters do not constrain mu"
   const AgeingExponent found = ageing_exponent(kept, {1, 1'000'000'000}, "a");
   CAPTURE(found.verdict, found.mu, found.low_95, found.high_95);
   CHECK_FALSE((std::isfinite(found.low_95) && std::isfinite(found.high_95)));
-  CHECK(found.verdict == "no mu: cannot decide: the curves do not constrain mu");
+  CHECK(found.verdict == "mu has no estimate; cannot decide: the curves do not constrain mu");
 }
 
 }  // namespace jostle

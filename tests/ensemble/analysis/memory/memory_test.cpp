@@ -57,7 +57,7 @@ std::vector<History> histories(const Setting& setting, double offset, std::uint6
 
 }  // namespace
 
-TEST_CASE("Windows of lags are two a decade and end at the last") {
+TEST_CASE("Windows of lags are two per decade and end at the last") {
   const auto ends = [](const std::vector<LagWindow>& all) {
     std::vector<std::uint64_t> last;
     for (const LagWindow& window : all) last.push_back(window.last);

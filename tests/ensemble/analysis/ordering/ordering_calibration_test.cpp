@@ -147,7 +147,7 @@ void check_intervals(const std::vector<std::size_t>& all_realizations) {
   constexpr int ensembles = 200;
   fmt::print(
       "  M shape | median 68 %   95 %  S(60) 95 % | fitted  shape 68 %   95 %  not memoryless "
-      "| a decade 68 %   95 %\n");
+      "| per decade 68 %   95 %\n");
   for (const std::size_t realizations : all_realizations) {
     for (const double shape : {1.0, 3.0}) {
       const Shares found = shares(realizations, shape, ensembles);

@@ -14,6 +14,9 @@ TEST_CASE("Quantities have the symbols of print, others are words") {
 TEST_CASE("Names of letters become letters if they are words of their own") {
   CHECK(in_print("Solids fraction Phi_b between the floor and 2 d") ==
         "Packing fraction Φ_b between the floor and 2 d");
+  CHECK(in_print("Elastic energy a sphere") == "Elastic energy per sphere");
+  CHECK(in_print("contacts with force a sphere when the tap ended") ==
+        "contacts with force per sphere when the tap ended");
   CHECK(in_print("height <Z> of xi^3, tau > 2") == "height ⟨Z⟩ of ξ³, τ > 2");
   CHECK(in_print("mu is 0.1: t/t_W^mu, A_inf") == "μ is 0.1: t/t_W^μ, A_∞");
   // Parts of words and names of several letters stay.

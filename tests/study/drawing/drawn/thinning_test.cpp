@@ -77,7 +77,7 @@ TEST_CASE("evenly spread places keep both ends and their order") {
   }
 }
 
-TEST_CASE("logarithmically spread places keep the ends, every early one and so many a decade") {
+TEST_CASE("logarithmically spread places keep the ends, every early one and so many per decade") {
   CHECK(logarithmically_spread(1, 40, 2) == std::vector<std::size_t>{0});
   CHECK(logarithmically_spread(2, 40, 2) == std::vector<std::size_t>{0, 1});
   const std::vector<std::size_t> places = logarithmically_spread(1'000'001, 40, 2);

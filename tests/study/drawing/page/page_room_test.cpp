@@ -132,7 +132,7 @@ const std::vector<Json>& first_series(const Json& data) {
 
 void check_thinned_curves(const ResultsFile& file, std::size_t n_points, std::size_t n_files) {
   const Json data = data_of(file, n_files);
-  CHECK_THAT(said(data), Catch::Contains("curves are drawn at 5 taps a decade"));
+  CHECK_THAT(said(data), Catch::Contains("curves are drawn at 5 taps per decade"));
   CHECK_THAT(said(data),
              Catch::Contains(fmt::format("of {} sweep points, evenly spread", n_points)));
   const auto& curves = first_series(data);
@@ -202,7 +202,7 @@ TEST_CASE("a very long series is thinned, with a note") {
   const TemporaryFolder folder;
   const ResultsFile file = file_of({.taps = 300'000}, folder / "long.h5", 123'457);
   const Json data = data_of(file);
-  CHECK_THAT(said(data), Catch::Contains("curves are drawn at 40 taps a decade"));
+  CHECK_THAT(said(data), Catch::Contains("curves are drawn at 40 taps per decade"));
   const auto& taps = first_series(data).front().at("x").elements();
   CHECK(taps.size() < 300);
   CHECK(taps.back().whole_number() == 300'000);

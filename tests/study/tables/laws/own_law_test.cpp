@@ -304,7 +304,11 @@ TEST_CASE("All faults of an own law are reported") {
   const std::vector<Bad> all = {
       {{.formula = "a*lgo(t)", .start = {{"a", 1}}}, "there is no function lgo; there are abs, "},
       {{.formula = "a*log(t/tau)", .start = {{"a", 1}}}, "the parameter tau has no start"},
+      {{.formula = "a + b*log(1 + t/tau)", .start = {}},
+       "the parameters a, b, tau have no start: give values, as a=1,b=1,tau=1, from which"},
       {{.formula = "a + b", .start = {{"a", 1}, {"b", 1}}}, "there is no t in it"},
+      {{.formula = "a+b*", .start = {{"a", 1}, {"b", 1}}}, "a+b* cannot be read: Unexpected end"},
+      {{.formula = "a + b*log(t", .start = {}}, "cannot be read"},
       {{.formula = "log(t)", .start = {}}, "it has no parameter to fit"},
       {{.formula = "a*t + (", .start = {{"a", 1}}}, "cannot be read"},
       {{.formula = "2t + a", .start = {{"a", 1}}}, "cannot be read"},
@@ -323,13 +327,17 @@ TEST_CASE("All faults of an own law are reported") {
       {{.formula = "a*t", .start = {{"a", 1}}, .bounds = {{"a", {2, 3}}}},
        "not between its bounds"},
       {{.formula = "a*t", .start = {{"a", 1}}, .bounds = {{"c", {2, 3}}}}, "c has bounds, but no"},
-      {{.name = "kww", .formula = "a*t", .start = {{"a", 1}}}, "cannot be called \"kww\""},
-      {{.name = "a/b", .formula = "a*t", .start = {{"a", 1}}}, "cannot be called \"a/b\""}};
+      {{.name = "kww", .formula = "a*t", .start = {{"a", 1}}},
+       "cannot be called \"kww\": docs/reference/laws.md uses this name"},
+      {{.name = "a/b", .formula = "a*t", .start = {{"a", 1}}},
+       "cannot be called \"a/b\": a name has letters"}};
   for (const Bad& bad : all) {
     const std::string said = fault(bad.law);
     CAPTURE(bad.law.formula, said);
     CHECK(said.find(bad.says) != std::string::npos);
   }
+  CHECK(fault({.formula = "a + b*t", .start = {}}).find("no parameter") == std::string::npos);
+  CHECK(fault({.formula = "a+b*", .start = {{"a", 1}}}).find("no t") == std::string::npos);
   const std::string message = fault({.formula = "foo(x)", .start = {}});
   CHECK(message.find("foo") != std::string::npos);
   CHECK(message.find("parameter x") != std::string::npos);

@@ -8,6 +8,7 @@
 #include "ensemble/analysis/analyses.hpp"
 #include "ensemble/analysis/sweeps/sweep_curve.hpp"
 #include "fitting/intervals/distributions.hpp"
+#include "study/bad_input.hpp"
 #include "study/tables/fits.hpp"
 #include "tests/fitting/noise.hpp"
 
@@ -112,6 +113,40 @@ TEST_CASE("A lower bound of a steady state's quantity is no point of a curve") {
     CHECK(measured.no_value.empty());
   }
   CHECK(derived_value(too_short, 0, "z", "steady/value").no_value.empty());
+}
+
+TEST_CASE("A quantity that is not kept is answered with those that are, and with the nearest") {
+  MadeTables tables = steady_state_of(0, 400);
+  tables.fits.push_back({.name = "point_0000/z/kww",
+                         .axes = {{"parameter",
+                                   {"parameter"},
+                                   std::vector<std::string>{"rho_inf", "tau_f"},
+                                   "",
+                                   "",
+                                   ""}}});
+  const auto refusal = [&](const char* quantity, const char* observable = "z") -> std::string {
+    try {
+      derived_value(tables, 0, observable, quantity);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string typo = refusal("steady/sigm");
+  CHECK(typo.starts_with("steady/sigm of z is not kept for sweep point 0; it has steady/"));
+  CHECK(typo.find("steady/sigma, steady/") != std::string::npos);
+  CHECK(typo.find("_error") == std::string::npos);
+  CHECK(typo.find("kww") == std::string::npos);
+  CHECK(typo.ends_with("Did you mean \"steady/sigma\"?"));
+  CHECK(refusal("stedy/sigma").ends_with("Did you mean \"steady/sigma\"?"));
+  CHECK(refusal("kww/rho") ==
+        "kww/rho of z is not kept for sweep point 0; it has kww/rho_inf, kww/tau_f. Did you mean "
+        "\"kww/rho_inf\"?");
+  CHECK(refusal("inverse_log/X_inf").find("kww/tau_f, steady/") != std::string::npos);
+  CHECK(refusal("inverse_log/X_inf").find(": make the analysis or the fit first.") !=
+        std::string::npos);
+  CHECK(refusal("steady/sigma", "x") ==
+        "steady/sigma of x is not kept for sweep point 0: make the analysis or the fit first");
 }
 
 TEST_CASE(
