@@ -300,9 +300,9 @@ Eigen::VectorXd AgeingLeastSquares::lowest_point() const {
 }
 
 bool AgeingLeastSquares::describes_curves() const {
-  // Each tau is tested, and B unless it is held: one of so many (Bonferroni).
-  const auto tests = static_cast<double>(curves_.size() + (b_is_held() ? 0 : 1));
-  const double level = 1 - significance_level / tests;
+  // One test for each waiting time (Bonferroni): along the valley of the squares, those of B and tau
+  // reject the same curves.
+  const double level = 1 - significance_level / static_cast<double>(curves_.size());
   const auto falls_on = [&](std::size_t parameter) {
     const Eigen::VectorXd weights = weights_of(parameter, best_);
     const ErrorOf error = error_of_sum(curves_, weights);
