@@ -181,14 +181,14 @@ std::vector<std::uint32_t> chosen_points(const Study& study, const std::string& 
     std::iota(all.begin(), all.end(), 0U);
     return all;
   }
+  if (wanted.starts_with(number_prefix)) {
+    const auto number = point_numbered(study, wanted.substr(std::strlen(number_prefix)));
+    if (number) return {*number};
+  }
   std::vector<std::uint32_t> chosen = points_with(study, wanted);
   if (const auto number = point_numbered(study, wanted)) {
     require_unambiguous(study, wanted, *number, chosen);
     return {*number};
-  }
-  if (chosen.empty() && wanted.starts_with(number_prefix)) {
-    const auto number = point_numbered(study, wanted.substr(std::strlen(number_prefix)));
-    if (number) return {*number};
   }
   if (!chosen.empty()) return chosen;
   throw BadArgument(Argument::sweep_point, wanted,
@@ -202,7 +202,8 @@ std::uint32_t chosen_point(const Study& study, const std::string& wanted) {
   if (chosen.size() == 1) return chosen.front();
   throw BadArgument(
       Argument::sweep_point, wanted,
-      fmt::format("points {} have it, and the command uses only one: choose it by number, as {}{}",
+      fmt::format("points {} have this value, and the command uses only one point: choose it by "
+                  "number, as {}{}",
                   fmt::join(chosen, ", "), number_prefix, chosen.front()));
 }
 

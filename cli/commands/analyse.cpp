@@ -47,8 +47,9 @@ SpectrumSettings spectrum_settings(const AnalyseArguments& arguments) {
       return !std::isfinite(end) || (end >= 0 && end <= 0.5);
     };
     if (!is_frequency(range.first) || !is_frequency(range.last)) {
-      throw BadInput(fmt::format(
-          "--band {}: frequencies of a value per tap are from 0 to 0.5 per tap", arguments.band));
+      throw BadInput(
+          fmt::format("--band {}: frequencies are from 0 to 0.5 per tap: keep both ends between",
+                      arguments.band));
     }
     settings.band = Band{std::max(range.first, 0.0), std::min(range.last, 0.5)};
     if (!(settings.band->lowest < settings.band->highest)) {

@@ -179,7 +179,7 @@ void add_cost(Command& app, int& code) {
     if (budget.count() > 0 && replicates.count() > 0) {
       throw BadInput(
           "--budget and --replicates exclude each other: a duration decides the number of "
-          "replicates, or the number is given");
+          "replicates. Give one of them");
     }
     code = run_cost(*arguments);
   });

@@ -138,7 +138,8 @@ void add_structure(Command& app, int& code) {
                   "profile, sides, layers, coordination, pair_correlation, order, gaps, "
                   "structure_factor, voronoi, clusters, pores, "
                   "void_probability, holes")
-      .separated_by(',');
+      .separated_by(',')
+      .offers(parts_of(all_structure()));
   command.add_option(
       "--settings", a.settings,
       "Settings in the form of a scene's \"structure\": a JSON file, or the object itself");

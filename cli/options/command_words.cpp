@@ -37,12 +37,20 @@ class ValueSeparation {
 
   SeparateValues operator()() {
     while (next_ < words_.size() && words_[next_] != "--") take_word();
-    found_.words.insert(found_.words.end(), words_.begin() + static_cast<std::ptrdiff_t>(next_),
-                        words_.end());
+    take_operands();
+    while (next_ < words_.size()) take_word();
     return std::move(found_);
   }
 
  private:
+  /// From "--" to the subcommand behind the files; the word behind "--" is a file, whatever it is.
+  void take_operands() {
+    const std::size_t first_file = next_ + 1;
+    for (; next_ < words_.size() && (next_ <= first_file || !ends_files(next_)); ++next_)
+      found_.words.push_back(words_[next_]);
+    has_file_ = has_file_ || next_ > first_file;
+  }
+
   void take_word() {
     const std::string& word = words_[next_];
     found_.words.push_back(word);
@@ -57,32 +65,46 @@ class ValueSeparation {
     if (option == nullptr || option->value.empty()) return;
     const bool has_value = equals != std::string::npos && equals + 1 < word.size();
     if (!has_value && next_ < words_.size()) found_.words.push_back(words_[next_++]);
-    if (option->repeated) take_list(word.substr(0, equals));
+    if (option->repeated) take_list(word.substr(0, equals), option->offer.words);
   }
 
-  void take_list(const std::string& name) {
+  void take_list(const std::string& name, const std::vector<std::string>& offered) {
     std::string list = name + " " + found_.words.back();
     const std::size_t first = next_;
-    for (; next_ < words_.size() && continues_list(); ++next_) {
+    for (; next_ < words_.size() && continues_list(offered); ++next_) {
       found_.words.insert(found_.words.end(), {name, words_[next_]});
       list += " " + words_[next_];
     }
     if (next_ > first && !has_file_) found_.long_list = list;
   }
 
-  bool continues_list() const {
+  bool continues_list(const std::vector<std::string>& offered) const {
     const std::string& word = words_[next_];
-    return !reads_as_option(word) && !ends_files(next_) && !is_file(word);
+    if (reads_as_option(word) || ends_files(next_) || has_suffix_of_file(word)) return false;
+    if (has_file_) return true;
+    if (next_ + 1 == words_.size() || ends_files(next_ + 1)) return false;
+    std::error_code ignored;
+    const bool is_value = std::ranges::find(offered, word) != offered.end() ||
+                          (!takes_several_files() && has_file_behind());
+    return is_value || !std::filesystem::is_regular_file(word, ignored);
   }
 
-  bool is_file(const std::string& word) const {
+  bool has_suffix_of_file(const std::string& word) const {
     for (const OptionText& files : command_.positionals)
       for (const std::string& suffix : files.offer.suffixes)
         if (word.ends_with("." + suffix)) return true;
-    if (has_file_) return false;
-    std::error_code ignored;
-    return next_ + 1 == words_.size() || ends_files(next_ + 1) ||
-           std::filesystem::is_regular_file(word, ignored);
+    return false;
+  }
+
+  bool takes_several_files() const {
+    return std::ranges::any_of(command_.positionals, &OptionText::repeated);
+  }
+
+  /// A word with such a suffix ends this list.
+  bool has_file_behind() const {
+    for (std::size_t i = next_; i < words_.size() && !reads_as_option(words_[i]); ++i)
+      if (has_suffix_of_file(words_[i])) return true;
+    return false;
   }
 
   bool ends_files(std::size_t index) const {

@@ -31,8 +31,10 @@ struct SeparateValues {
   std::string long_list;  // "--part a b", if words without commas follow it before any file
 };
 /// A list ends at an option, a subcommand or a file: a word with a suffix that the command offers
-/// for its files, and, as long as no file is given, an existing file or the last word. `words[0]`
-/// is the name of `command`.
+/// for its files. Before any file is given, the last word is one, and so is an existing file that
+/// is no value the option offers, unless a word with such a suffix follows in the list of a command
+/// of one file. Words behind "--" are files up to a subcommand. `words[0]` is the name of
+/// `command`.
 SeparateValues with_separate_values(const std::vector<std::string>& words,
                                     const CommandText& command);
 

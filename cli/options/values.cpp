@@ -57,10 +57,14 @@ KeptTaps kept_taps(const std::string& option, const std::vector<std::string>& wo
     } else if (tap) {
       choice.taps.push_back(*tap);
     } else {
-      throw BadInput(fmt::format("{0} {1}: neither a number nor \"all\"; several: {0} 0,10,100",
-                                 option, word));
+      throw BadInput(fmt::format(
+          "{0} {1}: neither a whole number from 0 on nor \"all\"; several: {0} 0,10,100", option,
+          word));
     }
   }
+  if (choice.all && !choice.taps.empty())
+    throw BadInput(
+        fmt::format("{}: \"all\" and numbers exclude each other: give one of them", option));
   return choice;
 }
 

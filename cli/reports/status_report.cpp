@@ -163,9 +163,9 @@ std::string status_text(const ShardsStatus& study) {
                                    sums.failed > 0 ? fmt::format(", {} failed", sums.failed) : ""));
   line("taps", fmt::format("{} of {}", sums.taps, sums.all_taps));
   line("core-hours", (study.used ? finite_text("{:.3g} used, ", hours(*study.used))
-                                 : "those used are not known before the first checkpoint, ") +
+                                 : "no cost is recorded yet, ") +
                          (study.left ? finite_text("about {:.3g} left", hours(*study.left))
-                                     : "those left are not known before the first recorded tap"));
+                                     : "the rest is not known"));
   for (const std::string& path : study.twice)
     line("twice", path + " holds a shard that another file holds");
   const std::string restore =

@@ -1,5 +1,6 @@
 #include "ensemble/statistics/autocorrelation.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -78,9 +79,18 @@ std::vector<double> with_weighted_sum(double rho, std::span<const double> weight
   return found;
 }
 
-/// Sums of a[i] b[i + lag] + b[i] a[i + lag] for lags 0 .. last, by transforms.
+/// Sums of a[i] b[i + lag] + b[i] a[i + lag] for lags 0 .. last: of many lags by transforms.
 std::vector<double> crossed_products(std::span<const double> a, std::span<const double> b,
                                      std::size_t last) {
+  constexpr std::size_t few_lags = 64;
+  if (last <= few_lags) {
+    std::vector<double> products(last + 1, 0.0);
+    for (std::size_t lag = 0; lag <= last; ++lag) {
+      for (std::size_t i = 0; i + lag < a.size(); ++i)
+        products[lag] += a[i] * b[i + lag] + b[i] * a[i + lag];
+    }
+    return products;
+  }
   const std::size_t padded = std::bit_ceil(a.size() + last + 1);
   const auto transform_of = [padded](std::span<const double> values) {
     std::vector<double> longer(values.begin(), values.end());
@@ -296,7 +306,12 @@ AutocorrelationTime Autocorrelation::unbiased() const {
   const Sum sum = summed();
   const std::optional<Process> process = sum.has_ended ? process_of(sum) : std::nullopt;
   if (!process) return lower_bound(sum);
-  return {.time = process->time, .error = process->error, .window = sum.last};
+  AutocorrelationTime result{.time = process->time, .error = process->error, .window = sum.last};
+  if (result.time < 0.5) return result;
+  // In series that are short against it the sum ends before the process's would on average.
+  const auto window = std::max(sum.last, static_cast<std::size_t>(window_in_times * result.time));
+  result.error = wolff_error(result.time, window, realizations_ * n_) / std::sqrt(process->gain);
+  return result;
 }
 
 Line fit_line(std::span<const double> series) {

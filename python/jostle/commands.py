@@ -17,7 +17,7 @@ from typing import Any
 from . import results as results_files
 from .errors import BadArgument, ProgramError, WrongType
 from .fits import FittedCurve, fitted_curves
-from .guards import path_text, takes_arguments
+from .guards import path_text, sweep_point_text, takes_arguments
 from .program import BROKEN, FAILED, OK, STOPPED, Path, answer, call, refusal
 from .results import Results
 from .tables import Table, table_from_json
@@ -164,7 +164,7 @@ def cost(scene: Scene | Path, output: Path | None = None, *, observable: str | N
     with scene_file(scene) as file:
         done = call(["cost", *_option("output", path),
                      *_options(observable=observable, target=target, budget=budget, taps=taps,
-                               replicates=replicates, sweep_point=sweep_point, resume=resume,
+                               replicates=replicates, sweep_point=sweep_point_text(sweep_point), resume=resume,
                                force=force, wait=wait)], [file], program=program,
                     accept=(OK, FAILED, STOPPED))
     return _opened(done, path, program), done.stdout
@@ -223,7 +223,7 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
         named.append(f"--bounds={name}={':'.join(ends)}")
     done = call(["fit", "--json", *named,
                  *_options(observable=observable, model=model, law=law, law_name=law_name,
-                           sweep_point=sweep_point, range=range, realizations=realizations,
+                           sweep_point=sweep_point_text(sweep_point), range=range, realizations=realizations,
                            gaps=gaps, independent=independent, figures=figures, page=page, resample=resample,
                            resamples=resamples, seed=seed, no_store=not store, wait=wait,
                            live=_live(results, live))], _paths(results), program=program, accept=(OK, BROKEN))
@@ -248,7 +248,7 @@ def analyse(results: Results | Path | Sequence[Path], what: str,
     names = [observable] if isinstance(observable, str) else list(observable or [])
     done = call(["analyse"], _paths(results), program=program, accept=(OK, BROKEN), behind=[
         str(what), "--json", *(word for name in names for word in _option("observable", name)),
-        *_options(sweep_point=sweep_point, last=last, waiting_times=waiting_times, lags=lags,
+        *_options(sweep_point=sweep_point_text(sweep_point), last=last, waiting_times=waiting_times, lags=lags,
                   quantity=quantity, against=against, reference=reference, spheres=spheres,
                   segment=segment, window=window, detrend=detrend, band=band, threshold=threshold,
                   hold=hold, equilibrium=equilibrium, threads=threads,
@@ -267,7 +267,7 @@ def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] |
     """
     done = call(["structure", "--json",
                  *_options(part=part, settings=None if settings is None else _json_text(settings, "settings"),
-                           tap=tap, sweep_point=sweep_point, threads=threads, no_store=not store, wait=wait,
+                           tap=tap, sweep_point=sweep_point_text(sweep_point), threads=threads, no_store=not store, wait=wait,
                            live=_live(results, live))], _paths(results), program=program, accept=(OK, BROKEN))
     return [table_from_json(one) for one in _report(done)["tables"]]
 
@@ -283,12 +283,12 @@ def report(results: Results | Path | Sequence[Path], output: Path, *, live: bool
 
 
 @takes_arguments
-def export(results: Results | Path, output: Path, *, format: str, point: int | None = None,
+def export(results: Results | Path, output: Path, *, format: str, point: int | str | None = None,
            realization: int | None = None, tap: Sequence[int] | str | None = None, live: bool = False,
            force: bool = False, wait: str | None = None, program: Path | None = None) -> Path:
     """Writes kept packings for other programs; format: "extxyz", "lammps", "vtp", "h5md". tap: None the
     last, "all", or some. Returns `output`."""
     call(["export", *_option("format", format), *_option("output", path_text(output, "output")),
-          *_options(sweep_point=None if point is None else f"number={point}", realization=realization, tap=tap,
+          *_options(sweep_point=sweep_point_text(point), realization=realization, tap=tap,
                     live=_live(results, live), force=force, wait=wait)], _paths(results), program=program)
     return output

@@ -115,3 +115,8 @@ def require_no_nul(text: str, what: str) -> None:
     if "\0" in text:
         raise BadArgument(f"{what}: {reprlib.repr(text)} has a NUL character, which no file's name and no argument of a "
                           "program can hold; take it out")
+
+
+def sweep_point_text(point: int | str | None) -> str | None:
+    """A whole number is the number of a sweep point, even where a value of another is that number."""
+    return point if point is None or isinstance(point, str) else f"number={point}"

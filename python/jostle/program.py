@@ -143,6 +143,7 @@ def _refusals_in(stdout: str) -> str:
 # The advice of the program names its options; callers of this package have arguments.
 _ARGUMENTS = (("with --resume", "with resume=True"), ("with -o FILE", "with output=FILE"),
               ("to another file with -o.", "to another file with output=FILE."), ("with --force", "with force=True"),
+              ("--no-store", "store=False"), ("--budget", "budget"), ("--replicates", "replicates"),
               ("(--force)", "(force=True)"), ("(--wait DURATION waits longer)", "(wait=DURATION waits longer)"))
 
 

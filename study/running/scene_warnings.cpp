@@ -82,10 +82,10 @@ class Warnings {
                       engine.diameter));
     }
     if (engine.density < small_density) {
-      add(
-          finite_text("/engine: the density is in kg/m^3, and {:g} is less than any solid has; "
-                      "{:g} g/cm^3 are {:g}",
-                      engine.density, engine.density, 1000 * engine.density));
+      add(finite_text(
+          "/engine: the density is in kg/m^3, and {:g} is less than that of nearly all solids; "
+          "{:g} g/cm^3 are {:g}",
+          engine.density, engine.density, 1000 * engine.density));
     }
     if (engine.gravity > large_gravity) {
       add(

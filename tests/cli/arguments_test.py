@@ -154,7 +154,8 @@ class Numbers(Refused):
         self.results()
         spectrum = ("analyse", "tiny.h5", "spectrum", "--observable", "mean_height", "--no-store")
         for band in ("0.1:0.9", "-0.1:0.4", "-2:-1", "0.6:0.9", "0.1:1e300"):
-            self.refused(*spectrum, f"--band={band}", answer=f"--band {band}: frequencies of a value per tap are from 0")
+            self.refused(*spectrum, f"--band={band}",
+                         answer=f"--band {band}: frequencies are from 0 to 0.5 per tap: keep both ends between")
         told = [self.jostle(*spectrum, "--band", band).stdout for band in ("0.05:0.5", "0.05:")]
         self.assertEqual(told[0], told[1])
         self.jostle(*spectrum, "--band", ":0.4")
@@ -288,6 +289,8 @@ class Order(Refused):
                               ["analyse", "--no-store", "--observable", "mean_height", file, "other.h5", "steady"],
                               ["analyse", "--lags", 1, 3, file, "ageing", *of_results],
                               ["analyse", "--lags", 1, 3, "--", file, "ageing", *of_results],
+                              ["analyse", "--", file, "ageing", *of_results, "--lags", 1, 3],
+                              ["analyse", "--", file, "steady", "--observable", "mean_height", "sweeps", "--no-store"],
                               ["analyse", file, "ageing", *of_results, "--lags", 1, 3, "--waiting-times", 0, 9]):
                 with self.subTest(arguments=arguments):
                     self.jostle(*arguments)
@@ -296,6 +299,17 @@ class Order(Refused):
                           ["--fix", "rho_inf=0.6", "tau=2", "--", "curve.csv"]):
             fit = self.jostle("fit", "--model", "kww", *arguments).stdout
             self.assertRegex(fit, "tau +2 .*fixed")
+
+    def test_a_file_with_the_name_of_a_value_is_none_of_the_files(self):
+        self.results()
+        self.write(CURVE, "curve.csv")
+        for value in ("kww", "layers", "tau=2"):
+            (self.folder / value).touch()
+        for arguments in (["fit", "--model", "inverse_log", "kww", "curve.csv"],
+                          ["structure", "--part", "profile", "layers", "tiny.h5", "--no-store"],
+                          ["fit", "--model", "kww", "--fix", "rho_inf=0.6", "tau=2", "curve.csv"]):
+            with self.subTest(arguments=arguments):
+                self.jostle(*arguments)
 
     def test_a_list_that_may_hold_the_file_is_named(self):
         self.results()
@@ -306,7 +320,7 @@ class Order(Refused):
         self.refused("analyse", "--observable", "mean_height", "gone", "steady",
                      answer="gone is neither a file nor an analysis")
         self.refused("fit", "--model", "kww,inverse_log", "--observable", "mean_height", answer="input is required")
-        self.refused("structure", "--tap", 0, -1, "tiny.h5", answer="--tap -1: neither a number nor")
+        self.refused("structure", "--tap", 0, -1, "tiny.h5", answer="--tap -1: neither a whole number from 0 on nor")
 
     def test_values_after_commas_blanks_and_in_turn_are_one_list(self):
         self.results()
@@ -328,7 +342,9 @@ class Order(Refused):
                            for taps in ((), ("--tap", "all"))))
         self.refused("fit", "tiny.h5", "--observable", "mean_height,sweeps",
                      answer="--observable mean_height,sweeps: a command fits one observable; run it for each")
-        self.refused("structure", "tiny.h5", "--tap", "0,x", answer='--tap x: neither a number nor "all"')
+        self.refused("structure", "tiny.h5", "--tap", "0,x", answer='--tap x: neither a whole number from 0 on nor "all"')
+        for command in (["structure", "tiny.h5"], ["export", "tiny.h5", "--format", "extxyz"]):
+            self.refused(*command, "--tap", "0,all", answer='--tap: "all" and numbers exclude each other')
 
 
 class Once(Refused):

@@ -306,8 +306,7 @@ class Status(Case):
                 if every:
                     self.assertIsNone(study["core_hours_used"])
                     self.assertIsNone(study["core_hours_left"])
-                    self.assertIn("those used are not known before the first checkpoint", text)
-                    self.assertIn("those left are not known before the first recorded tap", text)
+                    self.assertIn("no cost is recorded yet, the rest is not known", text)
                     self.assertIn("no cost is recorded yet", summary)
                 else:
                     self.assertGreater(study["core_hours_used"], 0)

@@ -141,7 +141,7 @@ class Cost(Case):
         self.assertIn("there is no tap", self.cost(expect=BAD_INPUT).stderr)
         self.write(changed(SCENE, sweep={"/protocol/0/tap/dilate": [0.05, 0.1], "/spheres": [40, 48]}))
         refused = self.cost("--sweep-point", "48", "--replicates", 1, expect=BAD_INPUT)
-        self.assertIn("--sweep-point 48: points 1, 3 have it, and the command uses only one", refused.stderr)
+        self.assertIn("--sweep-point 48: points 1, 3 have this value, and the command uses only one", refused.stderr)
         self.assertEqual(self.files(), ["scene.json"])
 
 

@@ -125,7 +125,7 @@ class Export(Case):
         self.run_scene("-o", "two.h5")
         refused = self.jostle("export", "two.h5", "--format", "extxyz", "--sweep-point", "dilate=0.05",
                               expect=BAD_INPUT)
-        self.assertIn("--sweep-point dilate=0.05: points 0, 1 have it, and the command uses only one: choose it by "
+        self.assertIn("--sweep-point dilate=0.05: points 0, 1 have this value, and the command uses only one point: choose it by "
                       "number, as number=0", refused.stderr)
         self.jostle("export", "two.h5", "--format", "extxyz", "--sweep-point", "number=1", "-o", "numbered.xyz")
         self.jostle("export", "two.h5", "--format", "extxyz", "--sweep-point", "1")
@@ -166,7 +166,7 @@ class Export(Case):
                 (["--sweep-point", 2], "there is none. The sweep points are\n  0  /protocol/0/tap/dilate=0.02\n"),
                 (["--sweep-point", "number=2"], "there is none. The sweep points are"),
                 (["--sweep-point", "dilat=0.02"], 'Did you mean "dilate = 0.02"? The sweep points are'),
-                (["--tap", "x"], "--tap x: neither a number nor"),
+                (["--tap", "x"], "--tap x: neither a whole number from 0 on nor"),
                 (["--format", "pdb"], "pdb")):
             with self.subTest(arguments=arguments):
                 before = self.files()
@@ -213,6 +213,13 @@ class SweepPoints(Case):
                       "number 1 (dilate = 2): write number=2 or dilate=2\n", self.refused("tiny.h5", "2"))
         out = self.jostle("export", "tiny.h5", "--format", "extxyz", "--tap", 4, "--sweep-point", "number=2").stdout
         self.assertIn("tiny_point2.xyz: sweep point 2 (dilate = 1), realization 0", out)
+
+    def test_a_label_that_reads_as_a_number_of_a_point_does_not_count(self):
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}],
+                           point_labels=["number=1", "strong"]))
+        self.run_scene()
+        for wanted, point in (("number=0", 0), ("number=1", 1), ("strong", 1)):
+            self.assertEqual(self.points("tiny.h5", wanted), [point], wanted)
 
     def test_a_number_that_is_a_label_of_another_point_names_none(self):
         self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}],

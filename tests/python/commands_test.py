@@ -41,8 +41,17 @@ class Run(Case):
             first = [float(word) for word in file.read_text().splitlines()[2].split()[1:4]]
             np.testing.assert_array_equal(first, results.positions(point)[0])
             jostle.plot.figures(results, point=point)
+            curve, = jostle.fit(path, "mean_height", model="kww", sweep_point=point)
+            self.assertIn(f"dilate = {(1, 0.1)[point]}", curve.title)
+            table, = jostle.analyse(path, "steady", "mean_height", sweep_point=np.int64(point), store=False)
+            self.assertIn(f"point_000{point}", table.name)
+        jostle.export(results, "named.xyz", format="extxyz", point="dilate=0.1")
+        self.assertEqual(pathlib.Path("named.xyz").read_bytes(), pathlib.Path("1.xyz").read_bytes())
         with self.assertRaisesRegex(jostle.JostleError, "write number=1 or dilate=1"):
-            jostle.fit(path, "mean_height", sweep_point=1)
+            jostle.fit(path, "mean_height", sweep_point="1")
+        pathlib.Path("curve.csv").write_text("t,X\n1,0.5\n2,0.6\n4,0.65\n8,0.67\n16,0.68\n")
+        with self.assertRaisesRegex(jostle.JostleError, "store=False applies only to results files"):
+            jostle.fit("curve.csv", model="kww", store=False)
 
     def test_a_dict_is_run_and_resumed_as_its_file_is(self):
         results = self.run_scene(SHORT, threads=1)

@@ -7,7 +7,7 @@ import pathlib
 import tempfile
 from typing import Any
 
-from ..guards import path_text, takes_arguments
+from ..guards import path_text, sweep_point_text, takes_arguments
 from ..program import Path, call
 from ..results import Results
 
@@ -21,7 +21,7 @@ def figures(results: Results | Path, *, point: int | str | None = None,
     live = isinstance(results, Results) and results.live
     with tempfile.TemporaryDirectory(prefix="jostle-figures-") as folder:
         written = pathlib.Path(folder) / "catalogue.json"
-        chosen = point if isinstance(point, str) else f"number={point}"
-        call(["report", f"--catalogue={written}", *([f"--sweep-point={chosen}"] if point is not None else []),
+        chosen = sweep_point_text(point)
+        call(["report", f"--catalogue={written}", *([f"--sweep-point={chosen}"] if chosen is not None else []),
               *(["--live"] if live else [])], [path], program=program)
         return {figure["name"]: figure for figure in json.loads(written.read_text(encoding="utf-8"))["figures"]}

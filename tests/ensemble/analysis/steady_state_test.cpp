@@ -216,6 +216,27 @@ TEST_CASE("A steady state names the drift that would have refuted it") {
   CHECK(steady_state(ensemble).verdict() == Verdict::not_reached);
 }
 
+TEST_CASE("The unbiased time of AR(1) has an error, however short its series are") {
+  std::size_t found = 0, within_3 = 0;
+  for (std::uint64_t e = 0; e < 200; ++e) {
+    for (const double time : {5.0, 25.0, 60.0}) {
+      Autocorrelation autocorrelation(Removed::line);
+      for (std::uint64_t r = 0; r < 4; ++r) {
+        autocorrelation.add(
+            synthetic::autoregressive((2 * time - 1) / (2 * time + 1), 100, 81000 + e, r));
+      }
+      const AutocorrelationTime unbiased = autocorrelation.unbiased();
+      if (!unbiased.found()) continue;
+      CHECK(unbiased.error > 0);
+      if (time > 5) continue;
+      ++found;
+      within_3 += std::abs(unbiased.time - time) < 3 * unbiased.error;
+    }
+  }
+  CHECK(found >= 190);
+  CHECK(within_3 >= 0.9 * static_cast<double>(found));
+}
+
 TEST_CASE("Realizations that keep to themselves have a larger error than blocking sees") {
   std::vector<std::vector<double>> ensemble;
   synthetic::Gaussian level(41);
