@@ -106,11 +106,11 @@ def positive(claim, estimates):
     p = max(map(p_two_sided, estimates)) if favours else min(1.0, len(estimates) * min(
         p_two_sided(estimate) for estimate in estimates if estimate.value <= 0))
     name = "t-test" + "s of all" * (len(estimates) > 1)
-    if p >= LEVEL and np.isfinite(claim.relevant):
+    if not p < LEVEL and np.isfinite(claim.relevant):
         less = min(1.0, len(estimates) * min(float(stats.t.sf((claim.relevant - e.value) / e.error, e.dof))
                                              for e in estimates))
         return NOT if less < LEVEL else UNDERPOWERED, less, f"above 0, or below {claim.relevant:g}"
-    return UNDERPOWERED if p >= LEVEL else REPRODUCED if favours else NOT, p, name
+    return UNDERPOWERED if not p < LEVEL else REPRODUCED if favours else NOT, p, name
 
 
 def within(claim, estimates):

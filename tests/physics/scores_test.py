@@ -137,6 +137,12 @@ def laws_that_do_not_fit_are_found(random):
         at_most(found[word], bound, f"inverse log, {word}")
 
 
+def one_bed_decides_nothing():
+    lone = [Estimate.of([0.3])]
+    for claim, judge in ((Claim("", "", "positive"), positive), (Claim("", "", "within", margin=1), within)):
+        check(judge(claim, lone)[0] == UNDERPOWERED, claim.kind, "is decided by one bed")
+
+
 def rows_of_one_statement_share_a_variance():
     """stated(): the values as printed, the root mean square of their errors, all degrees of freedom."""
     found = [contrasts.slope(k)[0] for k in range(4)]
@@ -204,6 +210,7 @@ def main():
     each_figure_has_at_most_eight_statements(scores)
     pages_are_those_of_the_reduced_data()
     words_of_figures()
+    one_bed_decides_nothing()
     rows_of_one_statement_share_a_variance()
     random = np.random.default_rng(51304)
     for test in (contrasts_keep_their_size, all_positive_keep_their_size, margins_keep_their_size, printed_numbers,
