@@ -6,9 +6,9 @@ import numpy as np
 
 from pictures import COLOURS, Picture, curves_of, value_of
 from reduce import REDUCED, read_table
-from special_drawings import (PRINTED_LABEL, draw_ageing, draw_densities, draw_free_volumes, draw_increases,
-                              draw_layers, draw_map, draw_neighbours, draw_pores, draw_pours, draw_snapshots, draw_surface,
-                              draw_tails, draw_void_probability)
+from special_drawings import (PRINTED_LABEL, draw_ageing, draw_densities, draw_free_volumes,
+                              draw_increases, draw_layers, draw_map, draw_neighbours, draw_pores, draw_pours,
+                              draw_snapshots, draw_spectra, draw_surface, draw_tails, draw_void_probability)
 from scores import (COMPATIBLE, DECIDED, NOT, QUALITATIVE, REPRODUCED, SILENT, UNDERPOWERED)
 
 matplotlib.use("svg")
@@ -22,8 +22,6 @@ TAPS, STRENGTH, PHI, MARKS = "taps", "eps^(1/2)", "packing fraction", "osD^v<>p"
 PANELS = {
     "pb2": [[("pb2", 1, Picture(TAPS, "Phi_b", across=True, log="x"))],
             [("pb2", 1, Picture(TAPS, "Phi_b", across=True))]],
-    "pb3": [[("pb3", 1, Picture(STRENGTH, "sigma_Z, diameters", columns="^sigma_Z"))],
-            [("pb3", 1, Picture(STRENGTH, "slope of the spectrum", columns="^slope"))]],
     "pb4": [[("pb4-bell", 1, Picture(STRENGTH, "Phi_c", columns="3001")),
              ("pb4-hysteresis", 1, Picture(STRENGTH, "Phi_c"))]],
     "pb6": [[("pb6-8", 1, Picture("height, diameters", PHI, across=True))]],
@@ -88,8 +86,9 @@ def save(figure, target):
 
 
 # figure: how many panels, and what draws them.
-SPECIAL = {"pb5": (2, draw_ageing), "pb8": (2, draw_increases),
-           "pb9": (1, draw_void_probability), "pb10": (3, draw_pores), "dr1": (2, draw_snapshots), "dr6": (4, draw_layers), "dr7": (1, draw_pours), "dr8": (1, draw_neighbours),
+SPECIAL = {"pb3": (2, draw_spectra), "pb5": (2, draw_ageing), "pb8": (2, draw_increases),
+           "pb9": (1, draw_void_probability), "pb10": (3, draw_pores), "dr1": (2, draw_snapshots),
+           "dr6": (4, draw_layers), "dr7": (1, draw_pours), "dr8": (1, draw_neighbours),
            "dr9": (1, draw_free_volumes), "dr15": (1, draw_map)}
 
 

@@ -3,8 +3,8 @@ import numpy as np
 from matplotlib.collections import EllipseCollection
 from scipy import optimize, stats
 
-from contrasts_of_beds import FRICTIONS, ROUGH, whole_bed
-from distributions import beds_of_point, distribution, label, numbers, series
+from contrasts_of_beds import CAMPAIGN, FRICTIONS, ROUGH, whole_bed
+from distributions import beds_of_point, distribution, label, numbers, series, spectrum
 from pictures import COLOURS, value_of
 from reduce import REDUCED, read_table
 
@@ -54,6 +54,26 @@ def draw_layers(axes):
             panel.axvline(0.5 + layer * LAYER, color="#bbbbbb", linewidth=.5)
         panel.plot(z, n, color=COLOURS[0], linewidth=.7)
         panel.set(xlabel="y/d", ylabel="n", title=f"{tap} taps", xlim=(0, 23))
+
+
+def draw_spectra(axes):
+    """[PB] 3: power of the mean height of the last 2000 taps, 4096 spheres, and its deviation, 1024 spheres."""
+    for point in range(4):
+        frequency, power = spectrum(CAMPAIGN, point)
+        strength = float(label(CAMPAIGN, point).split("= ")[1])
+        axes[0].plot(frequency, power.mean(axis=0), color=COLOURS[point], marker=MARKS[point], markersize=2,
+                     label=f"eps^(1/2) = {strength**0.5:.3g}")
+    middle = np.array([0.004, 0.2])
+    for slope, style in ((-1, ":"), (-1.5, "--")):
+        axes[0].plot(middle, 1e-5 * (middle / middle[0])**slope, "k", linestyle=style, label=f"f^{slope:g}")
+    axes[0].set(xscale="log", yscale="log", xlabel="frequency, 1/taps", ylabel="power of <Z>, square diameters x taps")
+    header, *rows = read_table(REDUCED / "pb3" / "1.csv")
+    found = [value_of(row[header.index("sigma_Z")]) for row in rows]
+    axes[1].errorbar([float(row[0]) for row in rows], [v for v, _, _ in found], [high - v for v, _, high in found],
+                     color=COLOURS[0], marker="o", markersize=3, capsize=1, linestyle="none", label="1024 spheres")
+    axes[1].set(xlabel="eps^(1/2)", ylabel="sigma_Z, diameters", xlim=(0, None), ylim=(0, None))
+    for panel in axes:
+        panel.legend()
 
 
 def gotoh(sigma, phi):

@@ -142,8 +142,8 @@ def overview_page(scores):
                      "held at 5 % (Benjamini and Hochberg 1995); the expected share of false "
                      f"decisions is at most {100 * expected:.0f} %."),
              wrapped("The runs of most figures are no longer at hand: their reduced data are the numbers that an "
-                     "earlier page printed (means and errors over realizations). DR 1 and 6 to 9 and the "
-                     "number of pores of PB 10 have data of each bed. " + NO_DATA),
+                     "earlier page printed (means and errors over realizations). DR 1 and 6 to 9, PB 9, the "
+                     "spectra of PB 3 and the number of pores of PB 10 have data of each bed. " + NO_DATA),
              wrapped("Not scored, because the papers do not state them: steadiness by a test of drift, one straight "
                      "line in DR 3, and KWW exponents of a few hundred taps beside laws fitted to many thousands. Ageing "
                      "is one statement per lag; its single steps are own questions. sigma_Z is proportional to "
