@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include "fitting/binned_curve.hpp"
@@ -14,10 +13,11 @@
 #include "fitting/intervals/student_intervals.hpp"
 #include "fitting/limit_fit.hpp"
 #include "fitting/numbers.hpp"
-#include "fitting/refusal.hpp"
 #include "fitting/solver/bounds.hpp"
 #include "fitting/solver/curve_residuals.hpp"
 #include "fitting/solver/grid.hpp"
+#include "fitting/statements/refusal.hpp"
+#include "fitting/statements/remarks.hpp"
 
 namespace jostle::inline fitting {
 
@@ -54,7 +54,6 @@ class Fitter {
   /// False where a profile found a lower minimum; the search then continues there.
   bool find_intervals(const DependentErrors& errors, Fit& fit);
   void void_intervals(Fit& fit) const;
-  void remark_on_order(Fit& fit) const;
   bool has_intervals(const Fit& fit) const;
   SolverOptions solver_options(const CurveResiduals& residuals) const;
 
@@ -278,21 +277,6 @@ void Fitter::void_intervals(Fit& fit) const {
       "the intervals are open.");
 }
 
-// A parameter that is fixed keeps its name, whatever the others are.
-void Fitter::remark_on_order(Fit& fit) const {
-  const ParameterValues canonical = model_.canonical(values_);
-  if (canonical == values_) return;
-  std::ostringstream text;
-  text.precision(4);
-  text << "A fixed parameter keeps the others from the order of this law. In that order the same "
-          "curve has";
-  for (std::size_t j = 0; j < canonical.size(); ++j) {
-    text << (j == 0 ? " " : ", ") << model_.parameters()[j].name << " = " << canonical[j];
-  }
-  text << "; meanings of parameters that assume the order do not apply.";
-  fit.remarks.push_back(text.str());
-}
-
 double Fitter::cost_of_all_points() const {
   if (searched_.t.size() == curve_.t.size()) return best_.cost;
   return linear_problem(model_, curve_, refined(), free_).residuals.squaredNorm();
@@ -316,19 +300,8 @@ Fit Fitter::finish() {
       if (attempt < most_attempts) continue;
       void_intervals(fit);
     }
-    if (!is_minimum(fit.reason) && fit.reason != EndReason::budget) {
-      fit.remarks.push_back(std::string("The fit did not settle: ") + describe(fit.reason) + ".");
-    }
-    if (fit.dof == 0) {
-      fit.remarks.push_back(
-          std::string("The law has as many parameters as there are points: ") +
-          (fit.sigma_given ? "nothing tests it." : "errors cannot be estimated."));
-    }
-    if (options_.profiles && fit.dof > 0 && fit.residual_sum == 0 && !fit.sigma_given) {
-      fit.remarks.push_back(
-          "The law meets every point exactly: without scatter there are no errors or intervals.");
-    }
-    if (any_fixed) remark_on_order(fit);
+    remark_on_end(options_, fit);
+    if (any_fixed) remark_on_order(model_, values_, fit);
     judge(curve_, options_.t_unit, fit);
     const FittedCurveOf fitted{model_, curve_,     searched_,          values_,
                                free_,  best_.cost, has_intervals(fit), options_};
@@ -336,23 +309,6 @@ Fit Fitter::finish() {
     add_restated(fitted, fit);
     return fit;
   }
-}
-
-// The only remark on the limit of evaluations.
-void remark_on_budget(long long allowed, const FitOptions& options, Fit& fit) {
-  std::ostringstream text;
-  text << "The fit stopped at its limit of evaluations (" << fit.total_evaluations
-       << " evaluations of the law over the curve, for " << fit.n_points
-       << (fit.n_bins > 0 ? " points in " + std::to_string(fit.n_bins) + " bins" : " points")
-       << " and " << fit.n_free << (fit.n_free == 1 ? " parameter): " : " parameters): ")
-       << (is_minimum(fit.reason) ? "unfinished intervals are open" : "no minimum was reached")
-       << ". ";
-  if (allowed < options.max_evaluations) {
-    text << "For more than " << few_parameters << " parameters the limit is below "
-         << options.max_evaluations << ", by the work of an evaluation. ";
-  }
-  text << "Fix parameters, or choose a law of fewer.";
-  fit.remarks.push_back(text.str());
 }
 
 }  // namespace
@@ -394,7 +350,7 @@ std::variant<Fit, Refusal> fit_as_given(const Model& model, const Curve& curve,
   if (auto* found = std::get_if<Fit>(&outcome)) {
     found->total_evaluations = counted.solver.budget->used;
     const bool stopped = budget.spent() || found->reason == EndReason::budget;
-    if (outermost && stopped) remark_on_budget(allowed, options, *found);
+    if (outermost && stopped) remark_on_budget(allowed, few_parameters, options, *found);
   }
   return outcome;
 }

@@ -1,4 +1,4 @@
-#include "fitting/refusal.hpp"
+#include "fitting/statements/refusal.hpp"
 
 #include <algorithm>
 #include <cmath>
