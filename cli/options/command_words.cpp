@@ -26,7 +26,8 @@ const OptionText* option_named(const CommandText& command, const std::string& na
 }
 
 bool reads_as_option(const std::string& word) {
-  return word.size() > 1 && word.front() == '-' && std::isdigit(word[1]) == 0;
+  return word.size() > 1 && word.front() == '-' &&
+         std::isdigit(static_cast<unsigned char>(word[1])) == 0;
 }
 
 /// One pass over the words of a command line.

@@ -267,8 +267,8 @@ def structure(results: Results | Path | Sequence[Path], *, part: Sequence[str] |
     """
     done = call(["structure", "--json",
                  *_options(part=part, settings=None if settings is None else _json_text(settings, "settings"),
-                           tap=tap, sweep_point=sweep_point_text(sweep_point), threads=threads, no_store=not store, wait=wait,
-                           live=_live(results, live))], _paths(results), program=program, accept=(OK, BROKEN))
+                           tap=tap, sweep_point=sweep_point_text(sweep_point), threads=threads,
+                           no_store=not store, wait=wait, live=_live(results, live))], _paths(results), program=program, accept=(OK, BROKEN))
     return [table_from_json(one) for one in _report(done)["tables"]]
 
 

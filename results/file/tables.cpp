@@ -190,6 +190,20 @@ void for_each_table(hid_t group, const std::string& path, Walk& walk, const Visi
   }
 }
 
+/// Names of the derived tables of a file whose group passes the test, in order.
+template <class Test>
+std::vector<std::string> derived_tables(hid_t file, const Test& passes) {
+  std::vector<std::string> names;
+  const auto name = [&](hid_t group, const std::string& table) {
+    if (passes(group)) names.push_back(table);
+  };
+  Walk walk;
+  for (const std::string group : derived_groups)
+    if (exists(file, group)) for_each_table(open_group(file, group), group, walk, name);
+  std::ranges::sort(names);
+  return names;
+}
+
 }  // namespace
 
 std::vector<std::string> store_tables(const std::string& path, const std::string& group,
@@ -254,30 +268,14 @@ std::vector<Table> ResultsFile::tables(const std::string& group) const {
 }
 
 std::vector<std::string> ResultsFile::table_names() const {
-  return naming_file(path(), [&] {
-    std::vector<std::string> names;
-    const auto name = [&](hid_t, const std::string& table) { names.push_back(table); };
-    Walk walk;
-    for (const std::string group : derived_groups)
-      if (exists(impl_->file(), group))
-        for_each_table(open_group(impl_->file(), group), group, walk, name);
-    std::ranges::sort(names);
-    return names;
-  });
+  return naming_file(path(),
+                     [&] { return derived_tables(impl_->file(), [](hid_t) { return true; }); });
 }
 
 std::vector<std::string> ResultsFile::tables_without_results() const {
   return naming_file(path(), [&] {
-    std::vector<std::string> names;
-    const auto name = [&](hid_t group, const std::string& table) {
-      if (checked(H5Aexists(group, "note_refused")) > 0) names.push_back(table);
-    };
-    Walk walk;
-    for (const std::string group : derived_groups)
-      if (exists(impl_->file(), group))
-        for_each_table(open_group(impl_->file(), group), group, walk, name);
-    std::ranges::sort(names);
-    return names;
+    return derived_tables(
+        impl_->file(), [](hid_t group) { return checked(H5Aexists(group, "note_refused")) > 0; });
   });
 }
 
