@@ -48,6 +48,8 @@ CLAIMS = [
           "sigma_Z is proportional to eps^(1/2)", dof=3, margin=0.01, **POST),
     Claim("pb3", "eps changes the spectrum at high frequencies only (at low ones by less than half as much)",
           "positive", "pb-campaign", "=high_frequencies_only", full=True),
+    Claim("pb3", "ln of the power at high frequencies rises from eps = 0.0025 to 0.1", "positive", "pb-campaign",
+          "=high_frequencies", own=True, full=True, **POST),
     Claim("pb3", "ln of the power at low frequencies is the same at eps = 0.0025 and 0.1 (0.69)", "within",
           "pb-campaign", "=low_frequencies", margin=0.69, own=True, full=True, **POST),
     *(Claim("pb3", f"slope of 1 to 1.5 at eps^(1/2) = {strength}, 4096 spheres", "within", "pb-campaign",

@@ -274,6 +274,10 @@ def low_frequencies():
     return [Estimate.of(effect_of_strength(LOW))]
 
 
+def high_frequencies():
+    return [Estimate.of(effect_of_strength(HIGH))]
+
+
 def slope_at_full_size(strength):
     """The slope of ln power against ln frequency, its bins alike, beds of one strength."""
     frequency, power = log_power(strength, FITTED)

@@ -31,8 +31,8 @@ FIGURES = {
                   " Strengths and taps are ours; the steady state is read as taps 1001 to 12 000. The effect of eps is "
                   "that of eps = 0.0025 and 0.1 on beds in pairs: means of ln of the power of taps 2000 to 4000, above "
                   "0.1 and from 0.002 to 0.01 per tap; \"only\" is read as less than half as much. This contrast was "
-                  "stated before its beds were run. Powers differ by a factor of 430 at high and of 22 at low "
-                  "frequencies; below 0.002 per tap, where weakly tapped beds still drift, the spectra meet."),
+                  "stated before its beds were run. Below 0.002 per tap, where weakly "
+                  "tapped beds still drift, the spectra meet."),
     "pb4": Figure("PB 4: bell and branches", ("pb4-bell", "pb4-hysteresis", "pb4-turns", "pb4-eta"),
                   f"{PB}/fig4-bell", "1024 (4096)", "4000; 1000 a step", "4 / 10",
                   "its maximum lies between 0.1 and 0.2", WALLS + " Steps of the branches are 0.05 for 0.025."),
