@@ -220,8 +220,7 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
       cost.label.name, study.pilot_taps(), study.pilot_taps() == 1 ? "" : "s", study.replicates(),
       study.settings()[study.reference().last].name);
   const std::string footer =
-      "front: no other setting but the reference has both a smaller |bias| + error and a smaller "
-      "time.\n" +
+      "front: no other setting has both a smaller |bias| + error and a smaller time.\n" +
       meaning_of_half(study) + shortfall_of_the_reference(cost) + doubt_of_the_reference(study) +
       failures(study) + growth_of_the_bias(study, cost) + other_windows_line(cost);
   return wrapped(head, layout.width) + rows(study, cost, layout) + wrapped(footer, layout.width);

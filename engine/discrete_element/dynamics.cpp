@@ -230,7 +230,7 @@ class GrainDynamics final : public Dynamics {
   // A step that is too long makes or loses energy: no such tap is recorded. Collisions are right to
   // a share of what moves in them, which beds that bounce on hardly dissipate.
   void require_closed_ledger() const {
-    constexpr double widest = 0.1, least = 1e-2;  // largest of the energies; m g d per sphere
+    constexpr double widest = 0.1, least = 1e-2;  // share of the moved energy; m g d per sphere
     const Energies now = loop_->energies();
     const Ledger tap = ledger(now);
     const double missing = std::abs(tap.missing);
