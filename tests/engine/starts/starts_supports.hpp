@@ -18,13 +18,13 @@ inline std::vector<Vec3> contacts(const Packing& packing, std::size_t sphere) {
   std::vector<Vec3> found;
   const Vec3 r = packing.centres[sphere];
   for (std::size_t neighbour = 0; neighbour < packing.centres.size(); ++neighbour) {
-    if (neighbour == sphere) continue;
+    const double reach = packing.radius(sphere) + packing.radius(neighbour) + touch_tolerance;
+    if (neighbour == sphere || std::abs(r.z - packing.centres[neighbour].z) > reach) continue;
     const Vec3 offset =
         std::visit([&](const auto& box) { return separation(box, r, packing.centres[neighbour]); },
                    packing.container);
     const double length = std::sqrt(norm_squared(offset));
-    if (length < packing.radius(sphere) + packing.radius(neighbour) + touch_tolerance)
-      found.push_back((1 / length) * offset);
+    if (length < reach) found.push_back((1 / length) * offset);
   }
   const Boundary boundary(packing.container);
   const double reach = packing.radius(sphere) + touch_tolerance;
