@@ -36,8 +36,11 @@ structure of the packings.")
 # The libraries are static: a program links their dependencies itself.
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libjostle-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+string(REGEX MATCH "^[0-9]+" fmt_major ${fmt_VERSION})
+math(EXPR fmt_next "${fmt_major} + 1")
+string(REGEX MATCH "^[0-9]+[.][0-9]+" fmt_least ${fmt_VERSION})
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-    "libeigen3-dev, libfmt-dev (>= 9.1), libfmt-dev (<< 10), libhdf5-dev, libmuparser-dev, libssl-dev, libtbb-dev, nlohmann-json3-dev, voro++-dev")
+    "libeigen3-dev, libfmt-dev (>= ${fmt_least}), libfmt-dev (<< ${fmt_next}), libhdf5-dev, libmuparser-dev, libssl-dev, libtbb-dev, nlohmann-json3-dev, voro++-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS jostle)
 set(CPACK_COMPONENT_DEV_DESCRIPTION
     "Static libraries and headers of jostle, and the files by which CMake's

@@ -4,8 +4,9 @@ add_library(jostle_options INTERFACE)
 target_compile_features(jostle_options INTERFACE cxx_std_20)
 # -Wshadow for g++ alone: clang also reports a local variable that has the name of another source's constant, and
 # sources of a folder are one unit.
+# Intel's compiler takes fast mathematics for granted.
 target_compile_options(jostle_options INTERFACE -Wall -Wextra -Wpedantic $<$<CXX_COMPILER_ID:GNU>:-Wshadow>
-                                                -ffp-contract=off)
+                                                $<$<CXX_COMPILER_ID:IntelLLVM>:-fp-model=precise> -ffp-contract=off)
 # Assertions name their sources from the root: the same bytes, whatever folder this is built in. A
 # compiler cache may hand paths on as seen from the folder of the build.
 file(RELATIVE_PATH root_from_build ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR})
@@ -14,7 +15,7 @@ target_compile_options(
                            -fmacro-prefix-map=${root_from_build}=>)
 # The trial loop joins conditions with | where a branch would cost.
 target_compile_options(jostle_options
-                       INTERFACE $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>)
+                       INTERFACE $<$<CXX_COMPILER_ID:Clang,AppleClang,IntelLLVM>:-Wno-bitwise-instead-of-logical>)
 # The twins of intrinsics, and of calls that only Linux has, are then used here as well.
 if(JOSTLE_PORTABLE)
   target_compile_definitions(jostle_options INTERFACE JOSTLE_PORTABLE)
@@ -70,7 +71,7 @@ function(jostle_sources target group separate)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:jostle_options>)
   target_include_directories(
-    ${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    ${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/sdk>
                      $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
                      $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/jostle/internal>)
   if(group STREQUAL not_hot)

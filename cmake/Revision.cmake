@@ -4,13 +4,14 @@ cmake_minimum_required(VERSION 3.25)
 set(revision "")
 find_program(git git)
 if(git)
-  execute_process(
-    COMMAND ${git} -C ${SOURCE} rev-parse --show-toplevel
-    OUTPUT_VARIABLE toplevel OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   file(REAL_PATH ${SOURCE} real_source)
+  set(git ${git} -c safe.directory=${real_source} -C ${SOURCE})  # also in a clone of another user
+  execute_process(
+    COMMAND ${git} rev-parse --show-toplevel
+    OUTPUT_VARIABLE toplevel OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   if(toplevel STREQUAL real_source)
     execute_process(
-      COMMAND ${git} -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
+      COMMAND ${git} describe --always --dirty --abbrev=12 --exclude=*
       OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   endif()
 endif()

@@ -2,6 +2,10 @@
 
 #include <cstdint>
 
+#ifdef __FAST_MATH__
+#error "compile without fast mathematics (-ffast-math, -Ofast): it changes results"
+#endif
+
 // Elementary functions as fixed sequences of IEEE operations, so that a trajectory is the same on
 // every machine; the C library's own differ between machines. Each is good to 2 ulp (tested).
 namespace jostle::inline engine {

@@ -261,7 +261,9 @@ void take_away(const std::string& path, const std::string& seen) {
     fail_on_disk(path, "rename", errno);
   }
   const Descriptor file = open_lock(renamed, O_RDONLY);
-  if (file && read_all(renamed, file.get()) != seen) ::link(renamed.c_str(), path.c_str());
+  if (file && read_all(renamed, file.get()) != seen && ::link(renamed.c_str(), path.c_str()) != 0 &&
+      errno != EEXIST)
+    fail_on_disk(path, "link", errno);
   ::unlink(renamed.c_str());
 }
 

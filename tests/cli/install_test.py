@@ -53,6 +53,11 @@ class Install(Case):
         self.run_own_sink(program)
         self.import_the_package(prefix)
 
+    def test_a_project_can_contain_the_sources(self):
+        self.command("cmake", "-G", "Ninja", "-S", SOURCE / "tests/cli/parent", "-B", "parent", f"-DJOSTLE={SOURCE}",
+                     f"-DPOUR={SOURCE / 'tests/cli/consumer/pour.cpp'}")
+        self.command("cmake", "--build", "parent", "--target", "pour")
+
     def import_the_package(self, prefix):
         """The installed package, with the program installed beside it, and as xarray's engine."""
         script = ("import jostle, xarray\n"
