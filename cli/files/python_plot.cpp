@@ -27,6 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* where_the_package_is =
+    "Where cmake --install put jostle: export PYTHONPATH=PREFIX/lib/python3/dist-packages.";
 constexpr const char* what_to_install =
     "On Debian or Ubuntu: sudo apt-get install python3-matplotlib python3-h5py python3-numpy. The "
     "data, the scripts and the JSON of --figures are written in any case.";
@@ -131,6 +133,23 @@ bool lacks_module(const Ended& ended) {
          ended.messages.find("No module named") != std::string::npos;
 }
 
+/// The first python3 that has all modules, else the first that there is: that of the environment
+/// into which pip has installed this program, that of the PATH, the system's.
+Ended call_first_complete(const fs::path& folder, JournalColumns columns) {
+  std::vector<std::string> programs = {"python3", "/usr/bin/python3"};
+  const fs::path own_folder = own_path().parent_path();
+  std::error_code fault;
+  if (fs::exists(own_folder / "../pyvenv.cfg", fault))
+    programs.insert(programs.begin(), (own_folder / "python3").string());
+  Ended first;
+  for (const std::string& program : programs) {
+    Ended ended = call(program, folder, columns);
+    if (!lacks_module(ended)) return ended;
+    if (!first.status) first = std::move(ended);
+  }
+  return first;
+}
+
 /// The last line of a traceback names the missing module.
 std::string last_line(std::string text) {
   while (text.ends_with('\n')) text.pop_back();
@@ -144,19 +163,16 @@ std::vector<PaperFigure> draw_with_python(const std::vector<Json>& figures,
   const ScratchFolder folder("figures");
   const std::string catalogue = catalogue_json(figures, {}).dump();
   write_new_file(folder.path() / "catalogue.json", std::as_bytes(std::span(catalogue)));
-  // The python3 of the PATH, or, where that has no matplotlib, the system's.
-  Ended ended = call("python3", folder.path(), columns);
-  if (lacks_module(ended)) {
-    Ended second = call("/usr/bin/python3", folder.path(), columns);
-    if (!lacks_module(second) || !ended.status) ended = std::move(second);
-  }
+  const Ended ended = call_first_complete(folder.path(), columns);
   if (!ended.status) {
     throw ResultsError(
         "python3", fmt::format("it is not installed, and draws the figures. {}", what_to_install));
   }
   if (lacks_module(ended)) {
-    throw ResultsError("python3", fmt::format("it cannot draw the figures: {}. {}",
-                                              last_line(ended.messages), what_to_install));
+    const std::string missing = last_line(ended.messages);
+    const bool is_own = missing.find("'jostle") != std::string::npos;
+    throw ResultsError("python3", fmt::format("it cannot draw the figures: {}. {}", missing,
+                                              is_own ? where_the_package_is : what_to_install));
   }
   std::vector<PaperFigure> drawn;
   for (const Json& figure : figures) {

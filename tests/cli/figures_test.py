@@ -258,6 +258,19 @@ class Output(Figures):
                             expect=BROKEN)
         self.assertIn("no room for pictures", done.stderr)
 
+    def test_the_python_of_the_own_environment_comes_first(self):
+        bin_folder = self.folder / "venv/bin"
+        bin_folder.mkdir(parents=True)
+        (self.folder / "venv/pyvenv.cfg").write_text("home = /usr/bin\n")
+        program = shutil.copy2(os.environ["JOSTLE"], bin_folder / "jostle")
+        fake = bin_folder / "python3"
+        fake.write_text("#!/bin/sh\necho 'that of the environment' >&2\nexit 1\n")
+        fake.chmod(0o755)
+        done = subprocess.run([program, "report", "tiny.h5", "--figures", "figures"], cwd=self.folder, text=True,
+                              capture_output=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, BROKEN)
+        self.assertIn("that of the environment", done.stderr)
+
     def test_settings_of_the_user_change_nothing(self):
         self.figures("tiny.h5")
         (self.folder / "matplotlibrc").write_text("axes.facecolor: red\nfont.size: 40\nbackend: tkagg\n")
