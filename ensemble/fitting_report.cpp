@@ -5,6 +5,7 @@
 #include <cassert>
 #include <limits>
 
+#include "engine/bed/boundary.hpp"
 #include "structure/density/profiles.hpp"
 #include "structure/observables.hpp"
 
@@ -19,7 +20,10 @@ double corrected_fraction(const Packing& packing) {
 double central_fraction(const Container& box, const std::vector<Vec3>& centres,
                         HeightWindow window) {
   if (!(window.low < window.high)) return std::numeric_limits<double>::quiet_NaN();
-  const double width = std::min(width_x(box), width_y(box));
+  const Boundary boundary(box);
+  double width = std::numeric_limits<double>::infinity();  // between walls
+  if (boundary.tube || boundary.planes_x()) width = std::min(width, boundary.width_x);
+  if (boundary.tube || boundary.planes_y()) width = std::min(width, boundary.width_y);
   const std::array<double, 2> edges{std::min(7 * sphere_radius, 0.25 * width), 0.5 * width};
   return wall_profile({box, centres}, edges, window).values.front();
 }

@@ -41,7 +41,8 @@ Realization::Realization(const Plan& plan, std::uint32_t index, std::unique_ptr<
         "the stored state has spheres of other diameters than this version of the program draws: "
         "go on with the version that began the run");
   state_.diameters.clear();
-  if (state_.rows > 0) observer_.emplace(plan.observables, state_.observable_windows);
+  if (state_.rows > 0)
+    observer_.emplace(with_kinds(plan.observables, plan.kinds), state_.observable_windows);
   if (packing_.centres.empty()) return;
   dynamics_->load(packing_);
   dynamics_->restore(std::exchange(state_.engine, {}));
@@ -94,7 +95,7 @@ bool Realization::start(const StopAsked& stop) {
 void Realization::record(Slice& slice) {
   dynamics_->store(packing_);
   if (state_.rows == 0) {  // windows by quantiles are those of the bed at tap 0
-    observer_.emplace(plan_.observables, packing_);
+    observer_.emplace(with_kinds(plan_.observables, plan_.kinds), packing_);
     state_.observable_windows = observer_->windows();
   }
   if (plan_.motion) {

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <iomanip>
+#include <set>
 #include <sstream>
+#include <string>
 
 #include "engine/bed/boundary.hpp"
 #include "engine/bed/slab.hpp"
@@ -126,9 +128,13 @@ Measurement measured_partial_pairs(const MeasuredPacking& measured, const PairsS
   measurement.places = {{"r", all.front().x, "sum of radii",
                          "distance of centres over the sum of the two radii, middle of a bin"}};
   const std::vector<SphereKind>& kinds = measured.packing.sizes->kinds();
+  std::set<std::string> names;
   for (const PartialCorrelation& pairs : all) {
-    const std::string name =
+    const std::string words =
         word_of(kinds[pairs.first].name) + "_" + word_of(kinds[pairs.second].name);
+    std::string name = words;  // names of two pairs may join to one text
+    for (int number = 2; !names.insert(name).second; ++number)
+      name = words + "_" + std::to_string(number);
     measurement.quantities.push_back(
         {.name = "g_" + name,
          .places = "r",

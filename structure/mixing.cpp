@@ -15,7 +15,7 @@ namespace jostle::inline structure {
 
 namespace {
 
-/// The kind whose mean diameter is first in the order.
+/// The kind whose mean diameter comes first in the order: each is compared with the best before it.
 template <class Order>
 std::uint32_t first_kind(const Sizes& sizes, const Order& order) {
   std::vector<double> sums(sizes.kinds().size(), 0), counts(sums);
@@ -63,7 +63,7 @@ std::uint32_t largest_kind(const Sizes& sizes) {
 }
 
 std::uint32_t smallest_kind(const Sizes& sizes) {
-  return first_kind(sizes, [](double a, double b) { return a < b; });
+  return first_kind(sizes, [](double a, double b) { return a <= b; });
 }
 
 double kind_height(const Packing& packing, std::uint32_t kind) {

@@ -12,7 +12,7 @@ namespace jostle::inline structure {
 std::uint32_t kind_named(const Sizes& sizes, std::string_view name);
 
 /// Return the numbers of the kinds of the largest and of the smallest mean diameter; of equal means
-/// the first. Kinds without spheres are left out.
+/// the first is called largest and the last smallest. Kinds without spheres are left out.
 std::uint32_t largest_kind(const Sizes& sizes);
 std::uint32_t smallest_kind(const Sizes& sizes);
 

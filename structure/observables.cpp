@@ -241,6 +241,26 @@ std::string_view observable_symbol(std::string_view name) {
   return symbol;
 }
 
+std::vector<Observable> with_kinds(std::vector<Observable> observables,
+                                   const std::vector<MixtureKind>& kinds) {
+  if (kinds.empty()) return observables;
+  const MixtureKind *largest = &kinds.front(), *smallest = largest;
+  for (const MixtureKind& kind : kinds) {
+    const double mean = mean_of(kind.diameter);
+    if (mean > mean_of(largest->diameter)) largest = &kind;
+    if (mean <= mean_of(smallest->diameter)) smallest = &kind;
+  }
+  for (Observable& observable : observables) {
+    if (auto* s = std::get_if<Segregation>(&observable)) {
+      if (!s->large) s->large = largest->name;
+      if (!s->small) s->small = smallest->name;
+    } else if (auto* index = std::get_if<LaceyIndex>(&observable)) {
+      if (!index->kind) index->kind = largest->name;
+    }
+  }
+  return observables;
+}
+
 Observer::Observer(const std::vector<Observable>& observables, const Packing& start)
     : observables_(observables) {
   windows_.reserve(observables.size());

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/bed/mixture.hpp"
 #include "engine/bed/packing.hpp"
 #include "engine/bed/window.hpp"
 #include "engine/column.hpp"
@@ -200,6 +201,12 @@ Column label(const Observable& observable, Spheres spheres = Spheres::equal);
 
 /// The symbol on axes of the observable that is stored under the name; empty where it has none.
 std::string_view observable_symbol(std::string_view name);
+
+/// The observables with the kinds that they leave open, chosen by the mean diameters of the laws of
+/// a mixture, so that all of its beds have the same kinds: of equal means the first is called
+/// largest and the last smallest. Without kinds the same observables.
+std::vector<Observable> with_kinds(std::vector<Observable> observables,
+                                   const std::vector<MixtureKind>& kinds);
 
 /// The observables of a scene with their windows resolved once, on the starting packing.
 class Observer {

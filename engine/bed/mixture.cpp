@@ -127,10 +127,26 @@ struct NumbersFault {
   }
 };
 
+struct MeanOf {
+  double operator()(const FixedDiameter& law) const { return law.value; }
+  double operator()(const LognormalDiameter& law) const { return law.mean; }
+  double operator()(const NormalDiameter& law) const { return law.mean; }
+  double operator()(const UniformDiameter& law) const { return 0.5 * (law.smallest + law.largest); }
+  double operator()(const ListedDiameters& law) const {
+    double sum = 0;
+    for (const double diameter : law.values) sum += diameter;
+    return sum / static_cast<double>(law.values.size());
+  }
+};
+
 }  // namespace
 
 DiameterRange range_of(const DiameterLaw& law) {
   return std::visit(RangeOf{}, law);
+}
+
+double mean_of(const DiameterLaw& law) {
+  return std::visit(MeanOf{}, law);
 }
 
 std::optional<std::string> diameter_fault(const DiameterLaw& law, std::uint32_t count) {

@@ -104,6 +104,9 @@ struct DiameterRange {
 /// Requires a law without a fault.
 DiameterRange range_of(const DiameterLaw& law);
 
+/// The mean diameter of a law, without its cut. Requires a law without a fault.
+double mean_of(const DiameterLaw& law);
+
 /// Returns why the law gives no diameters of `count` spheres, or nothing.
 std::optional<std::string> diameter_fault(const DiameterLaw& law, std::uint32_t count);
 

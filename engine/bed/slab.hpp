@@ -28,8 +28,9 @@ double tapered_solids_fraction(const Packing& packing, HeightWindow window, doub
 
 /// The window in heights: a height window is itself; a quantile window is taken from the heights
 /// of the centres of `packing` (linear interpolation between order statistics, numpy's default).
-/// In a mixture a centre counts by the volume of its sphere: the q-quantile is the height where the
-/// fraction q of the volume is below, half of each sphere's volume being counted below its centre.
+/// In a mixture a centre counts by the volume of its sphere: half of each sphere's volume is
+/// counted below its centre, and these fractions are stretched so that the lowest centre is at 0
+/// and the highest at 1.
 HeightWindow resolve(const Window& window, const Packing& packing);
 
 }  // namespace jostle::inline engine

@@ -190,6 +190,7 @@ ContactCensus GrainLoop::census() {
 double GrainLoop::sliding_share() const {
   constexpr double rounding = 1e-9;
   const double friction = settings_.spheres.friction;
+  if (friction == 0) return 0;
   double pairs = 0, sliding = 0;
   for (const Contact& contact : mechanics().contacts) {
     if (contact.second >= n_spheres()) continue;

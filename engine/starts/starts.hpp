@@ -174,9 +174,9 @@ inline constexpr std::uint64_t most_growth_sweeps = 1'000'000'000;
 /// Spheres that grow without order jam beyond this packing fraction.
 inline constexpr double densest_growth = 0.64;
 
-/// Random points whose diameters grow by Monte Carlo, those of a mixture by one factor, until the
-/// spheres fill the fully periodic box; at most packing fraction 0.64. From 0.61 on it grows slowly
-/// and may leave a residue after `max_sweeps`, an error.
+/// Random points whose diameters grow by Monte Carlo, those of a mixture each by a factor of its
+/// own, within 5 %, until the spheres fill the fully periodic box; at most packing fraction 0.64.
+/// From 0.61 on it grows slowly and may leave a residue after `max_sweeps`, an error.
 struct Grow {
   std::uint64_t max_sweeps = 1'000'000;
   bool operator==(const Grow&) const = default;

@@ -13,7 +13,7 @@
 // positions are kept of other taps.
 namespace jostle::inline ensemble {
 
-/// Most analyses of a scene.
+/// Limits of an analysis of motion.
 inline constexpr std::size_t most_motion_taps = 1000, most_overlap_lengths = 20;
 inline constexpr std::uint32_t most_motion_layers = 1000;
 inline constexpr std::uint64_t most_motion_bytes = std::uint64_t{1} << 30;    // a realization

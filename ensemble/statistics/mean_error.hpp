@@ -19,10 +19,10 @@ struct MeanError {
 /// Bayesian average over memories that are not known: noise of which a share forgets exponentially,
 /// white noise beside it, a mean and a variance of flat priors (1 / variance). Half of the prior
 /// is for white noise, half for times from 0.3 to n / 2 steps, uniform in ln time, of share 1 (40
-/// %) or 0.6, 0.3, 0.1, 0.03 (15 % each). For each memory the deviation of the mean is Student's t
-/// of n - 1 degrees of freedom; the mixture's limits of 68 % and 95 % give error and degrees of
-/// freedom. A memory that is chosen as the likeliest is too short on average, the average is not.
-/// series: equally spaced, n >= 3.
+/// %) or one of nine from 0.8 to 0.025 (60 % together). For each memory the deviation of the mean
+/// is Student's t of n - 1 degrees of freedom; the mixture's limits of 68 % and 95 % give error and
+/// degrees of freedom. A memory that is chosen as the likeliest is too short on average, the
+/// average is not. series: equally spaced, n >= 3.
 MeanError mean_error(std::span<const double> series);
 
 }  // namespace jostle::inline ensemble

@@ -11,8 +11,8 @@
 namespace jostle::inline structure {
 
 /// The boxcar mean of a profile: in every bin the mean over half of `width` on both sides of its
-/// middle, bins being filled evenly. Cut short at the ends of the profile. Requires width > 0. The
-/// default is 2 R.
+/// middle, bins being filled evenly. It is cut short at the floor, and empty above the profile.
+/// Requires width > 0. The default is 2 R.
 Profile smoothed(const Profile& profile, double width = 2 * sphere_radius);
 
 /// Where alpha is measured. Philippe & Bideau 2001, sec. IV: 5 <= z/R <= 22 between walls, 26 with

@@ -114,7 +114,7 @@ double hcp_layer_height(std::size_t k) {
   return sphere_radius + static_cast<double>(k) * spacing;
 }
 
-std::vector<Layer> layers(const Packing& packing, double tolerance) {
+std::vector<Layer> layers(const Packing& packing, double tolerance, std::size_t most) {
   if (!Boundary(packing.container).has_floor()) {
     throw std::invalid_argument(
         "layers: a fully periodic box has no floor for layers to grow from; take another "
@@ -130,7 +130,7 @@ std::vector<Layer> layers(const Packing& packing, double tolerance) {
     all.push_back(
         {.height = hcp_layer_height(all.size()), .found = height_near(heights, expected)});
     expected = all.back().found + spacing;
-  } while (expected - 0.5 * spacing <= heights.back());
+  } while (expected - 0.5 * spacing <= heights.back() && all.size() < most);
   for (std::size_t k = 0; k < all.size(); ++k) {
     const double low = k == 0 ? 0 : 0.5 * (all[k - 1].found + all[k].found);
     const double high =
@@ -147,7 +147,8 @@ std::vector<Layer> layers(const Packing& packing, double tolerance) {
 }
 
 std::size_t grown_layers(const Packing& packing, const LayerRule& rule) {
-  const std::vector<Layer> all = layers(packing, rule.tolerance);
+  // If there are more layers than spheres, one is empty and ends the grown ones.
+  const std::vector<Layer> all = layers(packing, rule.tolerance, packing.centres.size() + 2);
   const double by_area = full_layer(packing.container) / layer_by_area(packing.container);
   std::size_t grown = 0;
   for (double expected = sphere_radius; grown < all.size(); ++grown) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "engine/bed/packing.hpp"
@@ -51,9 +52,10 @@ struct Layer {
   double share = 0;  // share within the tolerance of `found`; 0 without spheres
 };
 
-/// All layers up to the highest centre. Throws std::invalid_argument for a fully periodic box,
-/// which has no floor.
-std::vector<Layer> layers(const Packing& packing, double tolerance = LayerRule{}.tolerance);
+/// The layers from the floor up to the highest centre, at most `most`. Throws std::invalid_argument
+/// for a fully periodic box, which has no floor.
+std::vector<Layer> layers(const Packing& packing, double tolerance = LayerRule{}.tolerance,
+                          std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// The number of layers grown from the floor: those below the first that the rule refuses.
 std::size_t grown_layers(const Packing& packing, const LayerRule& rule = {});

@@ -186,6 +186,7 @@ ShellPart::ShellPart(const Container& container)
     : boundary_(container), directions_(even_directions(500)) {}
 
 double ShellPart::operator()(Vec3 centre, double radius, double partner_radius) const {
+  if (!boundary_.has_floor() && !boundary_.has_walls()) return 1;
   // boundary_depth() is how deep a sphere of diameter 1 reaches beyond floor or sides.
   const double deepest = sphere_radius - partner_radius;
   if (boundary_depth(boundary_, centre) <= deepest - radius) return 1;

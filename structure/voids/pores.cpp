@@ -159,6 +159,8 @@ void draw_spheres(const Packing& packing, const Region& region, std::uint64_t po
 }  // namespace
 
 std::vector<Pore> pores(const Packing& packing, const VoronoiCells& cells, double merge) {
+  constexpr double rounding = 1e-9;  // between the cells that see one vertex
+  merge = std::max(merge, rounding);
   const std::vector<Sighting> found = sightings(packing, cells);
   const auto n = static_cast<std::uint32_t>(found.size());
   const Boundary boundary(packing.container);

@@ -114,7 +114,7 @@ class CellReader {
 
   void end_cell(double volume) {
     double surface = 0;
-    bool cut = false;
+    bool cut = volume == 0;  // voro++ could not make it
     for (std::size_t f = found_.first_face.back(); f < found_.faces.size(); ++f) {
       surface += found_.faces[f].area;
       cut = cut || found_.faces[f].neighbour == container_side;

@@ -50,6 +50,14 @@ TEST_CASE("The report of a fitting lists moves and the fractions before and afte
   CHECK(fitting_report(poured, fitted).central_fraction_before ==
         Approx(6 * sphere_volume / (13 * 13 * 6)));
 
+  // Between plates 20 apart the periodic width does not matter.
+  poured.container = Plates{4, 20};
+  fitted.container = Plates{4, 20};
+  poured.centres.back() = fitted.centres.back() = {2, 10, 5};
+  for (int i = 0; i < 10; ++i) poured.centres[i] = fitted.centres[i] = {2, 10, 0.5 + i};
+  CHECK(fitting_report(poured, fitted).central_fraction_before ==
+        Approx(7 * sphere_volume / (4 * 13 * 6)));
+
   // A layer: no height between 4 R and 0.8 x 2<Z>.
   const Packing layer{PeriodicBox{8, 8}, {{4, 4, 0.5}}},
       walled_layer{WalledBox{8, 8}, layer.centres};

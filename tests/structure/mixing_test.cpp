@@ -109,6 +109,26 @@ TEST_CASE("observables of kinds are found by names, or by mean diameters") {
   CHECK(observed(packing, MeanHeight{}) == mean_height(packing));
 }
 
+TEST_CASE("kinds that an observable leaves open are those of the laws, in every bed") {
+  const std::vector<MixtureKind> kinds = {{"middle", 5, NormalDiameter{1, 0.3}},
+                                          {"a", 5, LognormalDiameter{1.1, 0.3}},
+                                          {"b", 5, UniformDiameter{0.8, 1.4}},
+                                          {"c", 5, FixedDiameter{0.9}},
+                                          {"d", 5, ListedDiameters{{0.8, 1}}}};
+  const std::vector<Observable> chosen = with_kinds(
+      {Segregation{}, Segregation{"middle", std::nullopt}, LaceyIndex{}, MeanHeight{}}, kinds);
+  CHECK(chosen == std::vector<Observable>{Segregation{"a", "d"}, Segregation{"middle", "d"},
+                                          LaceyIndex{.kind = "a"}, MeanHeight{}});
+  CHECK(with_kinds({Segregation{}}, {}) == std::vector<Observable>{Segregation{}});
+}
+
+TEST_CASE("two kinds of one mean diameter are two kinds") {
+  const Packing packing = layered(4, [](std::size_t i) { return i < 72 ? 0u : 1u; });
+  CHECK(largest_kind(*packing.sizes) == 0);
+  CHECK(smallest_kind(*packing.sizes) == 1);
+  CHECK(observed(packing, Segregation{}) == Approx(-1));
+}
+
 TEST_CASE("observables of equal spheres reject mixtures by name, and the other way round") {
   const Packing mixture = layered(
       4, [](std::size_t i) { return i < 72 ? 0u : 1u; }, 1.5);

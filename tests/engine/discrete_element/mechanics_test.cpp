@@ -271,6 +271,16 @@ TEST_CASE("Monte Carlo has neither velocities nor forces") {
   CHECK(bed.contacts.empty());
 }
 
+TEST_CASE("spheres without friction do not slide, where the floor has friction") {
+  ReducedSettings units = settings(WaltonBraun{.friction = 0});
+  units.floor.friction = 0.3;
+  GrainLoop loop = loop_of(PeriodicBox{20, 20}, units,
+                           {grain({5, 5, 5}, {0, 3, -1}), grain({5, 5, 4.0}, {0, 0, 0})});
+  loop.run(3);
+  REQUIRE(loop.mechanics().contacts.size() == 1);
+  CHECK(loop.census().sliding == 0);
+}
+
 // Forces grow and shrink from step to step, so that those of two steps have another ratio.
 TEST_CASE("two spheres that slide on each other count as sliding from touch to parting") {
   const ContactLaw law = GENERATE(ContactLaw{WaltonBraun{.friction = 0.1}},

@@ -17,16 +17,18 @@ inline constexpr double touch_tolerance = 1e-6;  // diameters
 inline std::vector<Vec3> contacts(const Packing& packing, std::size_t sphere) {
   std::vector<Vec3> found;
   const Vec3 r = packing.centres[sphere];
+  const Boundary boundary(packing.container);
   for (std::size_t neighbour = 0; neighbour < packing.centres.size(); ++neighbour) {
     const double reach = packing.radius(sphere) + packing.radius(neighbour) + touch_tolerance;
-    if (neighbour == sphere || std::abs(r.z - packing.centres[neighbour].z) > reach) continue;
+    const bool is_far =
+        !boundary.periodic_z && std::abs(r.z - packing.centres[neighbour].z) > reach;
+    if (neighbour == sphere || is_far) continue;
     const Vec3 offset =
         std::visit([&](const auto& box) { return separation(box, r, packing.centres[neighbour]); },
                    packing.container);
     const double length = std::sqrt(norm_squared(offset));
     if (length < reach) found.push_back((1 / length) * offset);
   }
-  const Boundary boundary(packing.container);
   const double reach = packing.radius(sphere) + touch_tolerance;
   if (boundary.planes_x() && r.x < reach) found.push_back({1, 0, 0});
   if (boundary.planes_y() && r.y < reach) found.push_back({0, 1, 0});

@@ -47,6 +47,13 @@ const PeriodicBox commensurate{12, 14 * row};
 
 }  // namespace
 
+TEST_CASE("A sphere far above its bed adds no layer that has grown, and takes no memory") {
+  Packing packing = crystal(commensurate, 168 * 8);
+  packing.centres.push_back({1, 1, 1e17});
+  CHECK(grown_layers(packing) == 8);
+  CHECK(layers(packing, LayerRule{}.tolerance, 10).size() == 10);
+}
+
 TEST_CASE("All full layers of a close-packed crystal have grown") {
   CHECK(grown_layers(crystal(commensurate, 168 * 8)) == 8);
   CHECK(grown_layers(fcc_along_111(9)) == 9);

@@ -208,6 +208,11 @@ TEST_CASE("The part gaps counts contacts against the gap, and the region alone")
   }
 }
 
+TEST_CASE("Shells in a fully periodic box are whole, for partners of every size") {
+  const ShellPart part(FullyPeriodicBox{5, 5, 5});
+  for (const double partner : {0.3, 0.5, 0.65, 2.0}) CHECK(part({1, 2, 3}, 1.2, partner) == 1);
+}
+
 TEST_CASE("Gaps of an ideal gas have no exponent, also where sides cut the shells",
           "[statistics]") {
   // Shells between gaps of 0.01 and 0.5 around the centres nearest to floor and sides.
