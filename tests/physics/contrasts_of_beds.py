@@ -2,7 +2,8 @@
 import numpy as np
 from scipy import stats
 
-from distributions import label, numbers, point_of, series, spectrum
+from contrasts import contrast, top_of
+from distributions import label, numbers, point_of, series, spectrum, steady
 from verdicts import Estimate
 
 SPHERE = np.pi / 6
@@ -244,6 +245,80 @@ def pores_of_four(tap):
 
 def pores_first():
     return [Estimate.of(pores_of_four(0))]
+
+
+CRYSTAL = "dr-crystal"
+MELTED, LATE = (75, 100, 133), (1778, 2371, 3162)   # kept taps, means of which are compared
+ORDERED = (750, 800, 898, 1000, 1334)
+
+
+def from_crystal(lift):
+    """The sweep point of a lift."""
+    return point_of(CRYSTAL, f"lift = {lift}")
+
+
+def fall_from_crystal(lift):
+    """The fraction from the floor to 15 d of the crystal less that after 56 taps, the last kept before 60."""
+    return [Estimate.of(series(CRYSTAL, from_crystal(lift), "floor_15", 0) -
+                        series(CRYSTAL, from_crystal(lift), "floor_15", 56))]
+
+
+def fall_at_10():
+    return fall_from_crystal(0.1)
+
+
+def fall_at_20():
+    return fall_from_crystal(0.2)
+
+
+def fall_at_25():
+    return fall_from_crystal(0.25)
+
+
+def fall_at_30():
+    return fall_from_crystal(0.3)
+
+
+def fall_at_50():
+    return fall_from_crystal(0.5)
+
+
+LIFTS = (0.1, 0.2, 0.25, 0.3, 0.4, 0.5)
+
+
+def melted_crystals():
+    """[(lift, mean fraction of taps 4001 to 5000, standard error)], 0 to 15 d, and the least degrees of freedom."""
+    found = [(lift, Estimate.of(steady(CRYSTAL, from_crystal(lift), "floor_15"))) for lift in LIFTS]
+    return [(lift, e.value, e.error) for lift, e in found], min(e.dof for _, e in found)
+
+
+def best_crystal():
+    """0.25 and 0.3 less the weakest and less the strongest lift: variances differ as beds order."""
+    points, dof = melted_crystals()
+    return [contrast(points, w, dof, False) for w in ([-1, 0, .5, .5, 0, 0], [0, 0, .5, .5, 0, -1])]
+
+
+def best_crystal_top():
+    points, dof = melted_crystals()
+    return top_of(points, LIFTS, dof)
+
+
+def rise_per_e_fold(point, first, last):
+    """(last - first) / ln of their taps' ratio, [bed]: means over kept taps, whose tap is their geometric mean; None
+    for the mean of taps 4001 to 5000."""
+    def ends(taps):
+        if taps is None:
+            return steady(CRYSTAL, point, "floor_15"), np.log(4500)
+        return np.mean([series(CRYSTAL, point, "floor_15", tap) for tap in taps], axis=0), np.mean(np.log(taps))
+    (before, t0), (after, t1) = ends(first), ends(last)
+    return (after - before) / (t1 - t0)
+
+
+def flattening():
+    """Half the rise per e-fold of taps from about 100 to 940 less that from about 2370 to 4500, beds of lifts 0.2 and
+    0.25."""
+    return [Estimate.of(np.concatenate([rise_per_e_fold(point, MELTED, ORDERED) / 2 - rise_per_e_fold(point, LATE, None)
+                                        for point in map(from_crystal, (0.2, 0.25))]))]
 
 
 CAMPAIGN = "pb-campaign"

@@ -36,6 +36,13 @@ def label(run, point):
     return dict(read_table(REDUCED / run / "origin.csv")[1:])[f"point {point}"]
 
 
+def steady(run, point, observable):
+    """The mean over the last thousand taps, [bed], in the order of the realizations."""
+    header, *rows = read_table(REDUCED / run / "steady.csv")
+    at = header.index(observable)
+    return np.array([float(row[at]) for row in rows if row[0] == str(point)])
+
+
 def spectrum(run, point):
     """(frequencies in 1/taps, log-binned power of the mean height [bed, frequency]) of a sweep point."""
     rows = [row for row in read_table(REDUCED / run / "spectrum.csv")[1:] if row[0] == str(point)]

@@ -6,9 +6,10 @@ import numpy as np
 
 from pictures import COLOURS, Picture, curves_of, value_of
 from reduce import REDUCED, read_table
-from special_drawings import (PRINTED_LABEL, draw_ageing, draw_densities, draw_free_volumes,
+from special_drawings import (PRINTED_LABEL, draw_ageing, draw_crystals, draw_densities, draw_free_volumes,
                               draw_increases, draw_layers, draw_map, draw_neighbours, draw_pores, draw_pours,
-                              draw_snapshots, draw_spectra, draw_surface, draw_tails, draw_void_probability)
+                              draw_snapshots, draw_spectra, draw_steady_crystals, draw_surface, draw_tails,
+                              draw_void_probability)
 from scores import (COMPATIBLE, DECIDED, NOT, QUALITATIVE, REPRODUCED, SILENT, UNDERPOWERED)
 
 matplotlib.use("svg")
@@ -32,8 +33,6 @@ PANELS = {
     "dr3": [[("dr3", 1, Picture(PHI, "N_c", columns="N_c of the region", x_column=2))]],
     "dr4": [[("dr4", 1, Picture(TAPS, PHI, across=True, log="x"))],
             [("dr4", 1, Picture("lift, diameters", PHI, columns="^400$"))]],
-    "dr5": [[("dr5", 1, Picture(TAPS, PHI, across=True, log="x"))],
-            [("dr5", 1, Picture("lift, diameters", PHI, columns="^500$"))]],
     "dr10": [[("dr10-14", 1, Picture(TAPS, PHI, across=True, rows="Gamma = 2", log="x",
                                      paper=((0, 0.609), (898, 0.6997))))]],
     "dr11": [[("dr10-14", 1, Picture(TAPS, PHI, across=True, rows="^Gamma = [0-9.]*$", log="x"))]],
@@ -46,7 +45,7 @@ PANELS = {
 # Legends' names of the curves of tables, in this order.
 NAMES = ((r'tap = \{"lift":([0-9.]+)\}', r"lift \1"), (r'tap = \{"dilate_floor_held":0.025\}', "held dilation 1.025"),
          (r"^3001 to 4000 \(pb4-bell\)", "each from the poured bed"), (r"^Phi_c, (.*) \(pb4-hysteresis\)", r"one bed, \1"),
-         (r"^(400|500)$", r"after \1 taps"), ("^Gamma = 2$", "Gamma = 2, mean"), ("^Gamma = 2, realization", "bed"),
+         (r"^400$", "after 400 taps"), ("^Gamma = 2$", "Gamma = 2, mean"), ("^Gamma = 2, realization", "bed"),
          (r"^([0-9.]+ pi)$", r"theta_0 = \1"))
 
 
@@ -88,7 +87,7 @@ def save(figure, target):
 # figure: how many panels, and what draws them.
 SPECIAL = {"pb3": (2, draw_spectra), "pb5": (2, draw_ageing), "pb8": (2, draw_increases),
            "pb9": (1, draw_void_probability), "pb10": (3, draw_pores), "dr1": (2, draw_snapshots),
-           "dr6": (4, draw_layers), "dr7": (1, draw_pours), "dr8": (1, draw_neighbours),
+           "dr5": (2, draw_crystals), "dr6": (4, draw_layers), "dr7": (1, draw_pours), "dr8": (1, draw_neighbours),
            "dr9": (1, draw_free_volumes), "dr15": (1, draw_map)}
 
 
@@ -124,11 +123,11 @@ def draw_strongest(target):
         draw_tails(axes[2])
         draw_densities(axes[3], (1,))
         draw_pours([axes[4]])
-        for name, table, word in (("dr4", "400", "poured, 400 taps"), ("dr5", "500", "from a crystal, 500 taps")):
-            ((_, points),) = curves_of(read_table(REDUCED / name / "1.csv"), Picture("", "", columns=f"^{table}$"))
-            x, y, low, high = np.array(points).T
-            axes[5].errorbar(x, y, [y - low, high - y], marker=MARKS[name == "dr5"],
-                             color=COLOURS[name == "dr5"], markersize=3, capsize=1, label=word)
+        ((_, points),) = curves_of(read_table(REDUCED / "dr4" / "1.csv"), Picture("", "", columns="^400$"))
+        x, y, low, high = np.array(points).T
+        axes[5].errorbar(x, y, [y - low, high - y], marker=MARKS[0], color=COLOURS[0], markersize=3, capsize=1,
+                         label="poured, 400 taps")
+        draw_steady_crystals(axes[5], marker=MARKS[1], color=COLOURS[1], label="from a crystal, 5000 taps")
         axes[5].set(xlabel="lift, diameters", ylabel=PHI)
         axes[5].legend()
         for panel, title in zip(axes, (

@@ -3,13 +3,15 @@ import numpy as np
 from matplotlib.collections import EllipseCollection
 from scipy import optimize, stats
 
-from contrasts_of_beds import CAMPAIGN, FRICTIONS, ROUGH, whole_bed
-from distributions import beds_of_point, distribution, label, numbers, series, spectrum
+from contrasts_of_beds import CAMPAIGN, CRYSTAL, FRICTIONS, LIFTS, ROUGH, from_crystal, whole_bed
+from distributions import beds_of_point, distribution, label, numbers, series, spectrum, steady
 from pictures import COLOURS, value_of
 from reduce import REDUCED, read_table
+from verdicts import Estimate
 
 MARKS = "osD^v<>p"
 LAYER = (2 / 3)**0.5
+FLOOR_15 = "packing fraction, 0 to 15 d"
 PRINTED_LABEL = "the paper"
 PRINTED = ((0, 0.567), (50, 0.578), (250, 0.597))
 
@@ -39,7 +41,7 @@ def draw_densities(panel, points):
         panel.errorbar(taps, [v.mean() for v in values], [v.std(ddof=1) / len(v)**.5 for v in values],
                        color=COLOURS[point], label=READINGS[point], elinewidth=.6)
     panel.plot(*zip(*PRINTED), "ko", markerfacecolor="none", label=PRINTED_LABEL, zorder=5)
-    panel.set(xlabel="taps", ylabel="packing fraction, 0 to 15 d")
+    panel.set(xlabel="taps", ylabel=FLOOR_15)
     panel.set_xscale("symlog", linthresh=1)
     panel.legend()
 
@@ -74,6 +76,31 @@ def draw_spectra(axes):
     axes[1].set(xlabel="eps^(1/2)", ylabel="sigma_Z, diameters", xlim=(0, None), ylim=(0, None))
     for panel in axes:
         panel.legend()
+
+
+def draw_steady_crystals(panel, **style):
+    """[DR] 5b: the mean fraction of taps 4001 to 5000, from the floor to 15 d, against the lift."""
+    beds = [Estimate.of(steady(CRYSTAL, from_crystal(lift), "floor_15")) for lift in LIFTS]
+    panel.errorbar(LIFTS, [bed.value for bed in beds], [bed.half_width() for bed in beds], markersize=3, capsize=1,
+                   **style)
+
+
+def draw_crystals(axes):
+    """[DR] 5: the fraction against taps of two lifts, thin lines for single beds, with an inset; and against the lift."""
+    taps = sorted({int(row[2]) for row in read_table(REDUCED / CRYSTAL / "series.csv")[1:]})
+    inset = axes[0].inset_axes([.45, .55, .5, .4])
+    for k, lift in enumerate((0.2, 0.25)):
+        beds = np.array([series(CRYSTAL, from_crystal(lift), "floor_15", tap) for tap in taps])
+        for panel in (axes[0], inset):
+            panel.plot(taps, beds, color=COLOURS[k], linewidth=.3)
+            panel.plot(taps, beds.mean(axis=1), color=COLOURS[k], label=f"lift {lift}")
+    inset.set_xlim(0, 60)
+    inset.tick_params(labelsize=6)
+    axes[0].set(xlabel="taps", ylabel=FLOOR_15, ylim=(0.55, 0.75))
+    axes[0].legend(loc="lower right")
+    draw_steady_crystals(axes[1], marker="o", color=COLOURS[0], label="taps 4001 to 5000")
+    axes[1].set(xlabel="lift, diameters", ylabel=FLOOR_15)
+    axes[1].legend()
 
 
 def gotoh(sigma, phi):

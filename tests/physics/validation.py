@@ -57,8 +57,9 @@ def size_of(run):
     last = max(int(row[2]) for row in read_table(REDUCED / run / "series.csv")[1:])
     per_point = [sum(row[0] == str(point) for row in beds) for point in range(PAPER_RUNS[run].points)]
     least, most = min(per_point), max(per_point)
-    return (f"{scene['spheres']} spheres in {scene['container']['width']} x {scene['container']['width']} d, "
-            f"{scene['container']['sides']}, {last} taps, {least}{f' or {most}' * (most > least)} beds per sweep point.")
+    width = scene["container"]["width"]
+    x, y = width if isinstance(width, list) else (width, width)
+    return (f"{scene['spheres']} spheres in {x:.4g} x {y:.4g} d, {scene['container']['sides']}, {last} taps, {least}{f' or {most}' * (most > least)} beds per sweep point.")
 
 
 def command_of(run):
@@ -142,7 +143,7 @@ def overview_page(scores):
                      "held at 5 % (Benjamini and Hochberg 1995); the expected share of false "
                      f"decisions is at most {100 * expected:.0f} %."),
              wrapped("The runs of most figures are no longer at hand: their reduced data are the numbers that an "
-                     "earlier page printed (means and errors over realizations). DR 1 and 6 to 9, PB 9, the "
+                     "earlier page printed (means and errors over realizations). DR 1 and 5 to 9, PB 9, the "
                      "spectra of PB 3 and the number of pores of PB 10 have data of each bed. " + NO_DATA),
              wrapped("Not scored, because the papers do not state them: steadiness by a test of drift, one straight "
                      "line in DR 3, and KWW exponents of a few hundred taps beside laws fitted to many thousands. Ageing "
