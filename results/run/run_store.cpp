@@ -236,8 +236,9 @@ RunStore::~RunStore() = default;
 
 std::unique_ptr<RunStore> RunStore::create(const std::string& path, const Study& study,
                                            const Shard& shard, const Provenance& provenance,
-                                           bool force, Room room, const Patience& patience) {
-  auto impl = std::make_unique<Impl>(path, shard, force, room, patience);
+                                           bool force, Room room, const Patience& patience,
+                                           bool takes_over) {
+  auto impl = std::make_unique<Impl>(path, shard, force || takes_over, room, patience);
   impl->study = study;
   if (!force && file_exists(path))
     throw ResultsError(path, "exists already; resume it, choose another name, or replace it",
@@ -245,7 +246,7 @@ std::unique_ptr<RunStore> RunStore::create(const std::string& path, const Study&
   if (!force && parts_exist(path))
     throw ResultsError(parts_folder(path),
                        "holds parts of an earlier run whose results file is gone; restore that "
-                       "file, or discard the parts",
+                       "file, or discard the parts by a new run",
                        ResultsError::Force::helps);
   impl->start(provenance);
   return std::unique_ptr<RunStore>(new RunStore(std::move(impl)));

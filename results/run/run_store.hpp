@@ -25,11 +25,12 @@ class RunStore : public Sink {
   enum class Room { for_all, for_a_part };
 
   /// Starts a file. An existing one is refused unless `force`, which discards it and its parts and
-  /// takes over the lock of another host. Another process is waited for with `patience`.
+  /// takes over the lock of another host; `takes_over` does the latter alone. Another process is
+  /// waited for with `patience`.
   static std::unique_ptr<RunStore> create(const std::string& path, const Study& study,
                                           const Shard& shard, const Provenance& provenance,
                                           bool force = false, Room room = Room::for_all,
-                                          const Patience& patience = {});
+                                          const Patience& patience = {}, bool takes_over = false);
   /// Resumes a file. `study` is the stored one, or it has more taps at the end, more
   /// realizations or more sweep points, in any order: the caller compares the scenes
   /// (ResultsFile::study) and refuses other changes. Points are known by their ids. A share of a

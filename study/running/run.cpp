@@ -58,8 +58,8 @@ SceneRun::SceneRun(const LoadedScene& loaded, const RunSettings& settings, RunOb
   std::error_code unreadable;  // a ring of links, a name too long: reported when it is opened
   if (!std::filesystem::exists(output, unreadable) || settings.existing == Existing::replace) {
     store_ = RunStore::create(output, study_, settings.shard, provenance,
-                              settings.take_over || settings.existing == Existing::replace,
-                              settings.room, settings.patience);
+                              settings.existing == Existing::replace, settings.room,
+                              settings.patience, settings.take_over);
     return;
   }
   if (!resumes) throw OutputExists(output);

@@ -6,7 +6,7 @@ import unittest
 
 import h5py
 
-from support import FAILED, SLOW, STOPPED, TINY, Case, changed, some
+from support import BROKEN, FAILED, SLOW, STOPPED, TINY, Case, changed, some
 
 # With trials that are skipped by the hundred.
 SKIPPING = changed(SLOW, relax={"polar": {}, "stop": {"sweeps": 20000000},
@@ -44,6 +44,14 @@ class Stops(Case):
                 self.resume_by_the_printed_command(err)
                 self.assertEqual(self.digest("tiny.h5"), straight)
                 (self.folder / "tiny.h5").unlink()
+
+    def test_parts_without_their_file_are_kept_by_a_forced_resume(self):
+        state = self.folder / "tiny.h5.parts" / "p0000_r00000.state"
+        state.parent.mkdir()
+        state.write_bytes(b"checkpoint")
+        done = self.jostle("run", "scene.json", "--resume", "--force", expect=BROKEN)
+        self.assertIn("holds parts of an earlier run", done.stderr)
+        self.assertEqual(state.read_bytes(), b"checkpoint")
 
     def test_a_stop_while_the_start_comes_to_rest_is_resumable(self):
         self.write(changed(SLOW, realizations=1, start={"random_settle": {}}, protocol=[],

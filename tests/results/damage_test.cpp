@@ -146,6 +146,10 @@ TEST_CASE("parts without their file are not built upon") {
   std::filesystem::remove(run.path);
   CHECK_THROWS_WITH(RunStore::create(run.path, run.study, {}, provenance()),
                     Contains(run.path + ".parts") && Contains("discard the parts"));
+  // Nor are they discarded by a run that only takes over the lock of another host.
+  CHECK_THROWS_WITH(RunStore::create(run.path, run.study, {}, provenance(), false,
+                                     RunStore::Room::for_all, {}, true),
+                    Contains("discard the parts"));
   CHECK(std::filesystem::exists(run.state));
   RunStore::create(run.path, run.study, {}, provenance(), true);
   CHECK_FALSE(std::filesystem::exists(run.state));
