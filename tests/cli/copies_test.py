@@ -94,6 +94,27 @@ class Copies(Case):
         self.write(SINGLE)
         self.assertNotIn("repeat the series", self.run_scene(environment=UNFOLDED).stdout)
 
+    def test_copies_count_once_in_figures_of_snapshots_and_are_no_thin_lines(self):
+        def drawn(name):
+            """The series of the coordination, and of all thin lines."""
+            self.jostle("report", f"{name}.h5", "--catalogue", "catalogue.json", "--force")
+            figures = json.loads((self.folder / "catalogue.json").read_text())["figures"]
+            series = {figure["name"]: figure["panels"][0]["series"] for figure in figures}
+            return (series["coordination-of-the-kept-packings"][0],
+                    [line for lines in series.values() for line in lines if line.get("thin")])
+
+        self.write(changed(CRYSTAL, protocol=[{"tap": {"half_sine": {}}, "count": 3}], snapshots={"taps": [0, 3]}))
+        self.run_scene()
+        coordination, thin = drawn("crystal")
+        self.assertEqual(len(coordination["y"]), 2)
+        self.assertNotIn("error", coordination)  # one packing has none
+        self.assertEqual(thin, [])
+        self.write(changed(SINGLE, snapshots={"taps": [0, 2]}))
+        self.run_scene()
+        coordination, thin = drawn("tiny")
+        self.assertGreater(max(coordination["error"]), 0)
+        self.assertNotEqual(thin, [])
+
     def test_copies_meet_no_target_precision_and_none_are_added(self):
         target = {"observable": "mean_height", "standard_error": 0.01}
         self.write(changed(CRYSTAL, protocol=[{"tap": {"half_sine": {}}, "count": 3}],

@@ -41,11 +41,21 @@ constexpr std::size_t arrays_of_a_column = 4;
 constexpr std::size_t most_curves_with_realizations = 4, most_thin_lines = 5;
 constexpr std::uint64_t most_rows_of_realizations = 200'000;
 
-/// Adds some realizations of the observables; a point with one realization needs none.
+/// Realizations of a sweep point that have taps, without those that repeat an earlier one.
+std::vector<std::uint32_t> distinct_with_taps(const ResultsFile& file, std::uint32_t point) {
+  std::vector<std::uint32_t> available = realizations_with_taps(file, point);
+  if (available.size() < 2) return available;
+  const std::vector<std::uint32_t> copies = repetitions(file, point).realizations;
+  std::erase_if(available, [&](std::uint32_t r) { return std::ranges::binary_search(copies, r); });
+  return available;
+}
+
+/// Adds some distinct realizations of the observables; a point with one of them needs none.
 void add_realizations(const ResultsFile& file, DrawnCurve& curve) {
   const std::uint64_t rows = file.n_stored_rows(curve.point);
-  const std::vector<std::uint32_t> available = realizations_with_taps(file, curve.point);
-  if (available.size() < 2 || rows > most_rows_of_realizations) return;
+  if (rows > most_rows_of_realizations) return;
+  const std::vector<std::uint32_t> available = distinct_with_taps(file, curve.point);
+  if (available.size() < 2) return;
   for (DrawnColumn& column : curve.columns) {
     if (!column.is_observable) continue;
     for (const std::uint32_t r : spread(available, most_thin_lines)) {
@@ -221,9 +231,10 @@ std::vector<DrawnSnapshots> drawn_snapshots(const ResultsFile& file, const Wante
   std::size_t realizations = 0;
   for (const std::uint32_t point : spread(begun, most_snapshot_points)) {
     const Snapshots& kept = file.study().points[point].snapshots;
+    if (kept.taps.empty()) continue;
     const std::vector<std::uint64_t> taps = spread(kept.taps, most_histograms);
     SnapshotMeans means;
-    const std::vector<std::uint32_t> available = realizations_with_taps(file, point);
+    const std::vector<std::uint32_t> available = distinct_with_taps(file, point);
     realizations = std::max(realizations, available.size());
     for (const std::uint32_t r : spread(available, most_snapshot_realizations)) {
       means.add(*file.realization({point, r}), taps);
