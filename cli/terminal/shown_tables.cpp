@@ -67,7 +67,8 @@ int ShownTables::end(const Provenance& provenance) const {
     const Json object = {{"tables", listed_}, {"provenance", provenance_json(provenance)}};
     print_json(object);
   }
-  if (!output_.csv.empty()) write_text(output_.csv, csv_);
+  // A file of refusals alone would be in the way of the corrected command.
+  if (any_ && !output_.csv.empty()) write_text(output_.csv, csv_);
   if (!all_stored_) return exit_io_error;
   if (any_) return exit_ok;
   print_to_standard_error(fmt::format("jostle: no table could be made{}\n", refusals_));

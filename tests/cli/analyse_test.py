@@ -156,6 +156,16 @@ class Analyses(Analysed):
                            "--band", "0.3:0.1", expect=BAD_INPUT)
         self.assertIn("--band", done.stderr)
 
+    def test_a_refused_analysis_writes_no_csv(self):
+        self.write(TINY)
+        self.run_scene()
+        steady = ["analyse", "tiny.h5", "steady", "--observable", "mean_height", "--csv", "steady.csv"]
+        self.jostle(*steady, expect=BAD_INPUT)
+        self.assertFalse((self.folder / "steady.csv").exists())
+        self.write("kept", "steady.csv")
+        self.jostle(*steady, "--force", expect=BAD_INPUT)
+        self.assertEqual((self.folder / "steady.csv").read_text(), "kept")
+
     def test_a_sweep_has_no_sweep_point(self):
         self.write(TAPPED)
         self.run_scene()
