@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <charconv>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -127,8 +128,25 @@ bool is_one_of(std::string_view word, const Names& names) {
   return std::ranges::find(names, word) != std::end(names);
 }
 
+/// Appends the text that bash's quotes $'...' enclose; returns the place of the closing quote.
+std::size_t append_escaped(std::string_view line, std::size_t start, std::string& word) {
+  std::size_t i = start;
+  for (; i < line.size() && line[i] != '\''; ++i) {
+    if (line[i] == '\\' && i + 1 < line.size() && line[++i] == 'x') {
+      const std::string_view digits = line.substr(i + 1, 2);
+      unsigned byte = 0;
+      const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
+      word += static_cast<char>(byte);
+      i += static_cast<std::size_t>(read.ptr - digits.data());
+    } else {
+      word += line[i];
+    }
+  }
+  return i;
+}
+
 /// Words of a line that shell_words() made.
-std::vector<std::string> words_of(const std::string& line) {
+std::vector<std::string> words_of(std::string_view line) {
   std::vector<std::string> words;
   bool in_word = false, quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -139,7 +157,9 @@ std::vector<std::string> words_of(const std::string& line) {
     }
     if (!in_word) words.emplace_back();
     in_word = true;
-    if (c == '\'') {
+    if (line.substr(i, 2) == "$'" && !quoted) {
+      i = append_escaped(line, i + 2, words.back());
+    } else if (c == '\'') {
       quoted = !quoted;
     } else if (c == '\\' && !quoted && i + 1 < line.size()) {
       words.back() += line[++i];

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "study/provenance.hpp"
+
 using namespace jostle;
 
 namespace {
@@ -46,4 +48,15 @@ TEST_CASE("Steps that a scene does itself are not proposed again, except its pag
         "fit, report");
   CHECK(proposed(protocol + R"("structure": {"order": {"bin_width": 1}}})", 1, 10, {0}) ==
         "report, export");
+}
+
+TEST_CASE("A command that resumes names its scene, whatever characters the name has") {
+  for (const std::string scene :
+       {"plain.json", "two words.json", "it's.json", "tab\tand ' and \\.json", "\xce\xb5\\x41.json",
+        "\xff\n\\\\x41 $'b'.json", "a$'b'.json"}) {
+    CAPTURE(scene);
+    const std::string stored = shell_words({"jostle", "run", scene, "--threads", "2"});
+    CHECK(redo_command("jostle", stored, 0, 1, "a.h5") ==
+          shell_words({"jostle", "run", scene, "--threads=2", "--resume", "-o", "a.h5"}));
+  }
 }
