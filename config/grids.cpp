@@ -11,14 +11,6 @@ namespace jostle::inline config {
 
 namespace {
 
-/// The double nearest to the value's first 15 significant digits.
-double rounded_to_15_digits(double value) {
-  const std::string text = fmt::format("{:.15g}", value);
-  double rounded = value;
-  read_decimal(text.data(), text.data() + text.size(), rounded);
-  return rounded;
-}
-
 /// x^(1/n) of 10 by Newton's method from above, in the same bits on every machine.
 double root_of_ten(std::uint32_t n) {
   double root = 10;
@@ -53,6 +45,13 @@ std::vector<std::uint64_t> logarithmic(const LogarithmicTaps& grid) {
 }
 
 }  // namespace
+
+double rounded_to_15_digits(double value) {
+  const std::string text = fmt::format("{:.15g}", value);
+  double rounded = value;
+  read_decimal(text.data(), text.data() + text.size(), rounded);
+  return rounded;
+}
 
 std::optional<std::uint64_t> whole_steps(const Ramp& ramp) {
   const double steps = std::abs(ramp.end - ramp.start) / ramp.step;

@@ -8,6 +8,9 @@
 // Lists that a scene gives by a rule.
 namespace jostle::inline config {
 
+/// The double nearest to the value's first 15 significant digits: 1e-7, not 1.0000000000000001e-07.
+double rounded_to_15_digits(double value);
+
 /// How many steps lead from one end of a ramp to the other; nothing where no whole number does, to
 /// one part in 1e6 of a step.
 std::optional<std::uint64_t> whole_steps(const Ramp& ramp);

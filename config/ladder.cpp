@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "config/grids.hpp"
 #include "config/parts/parts.hpp"
@@ -17,11 +16,6 @@ namespace {
 
 constexpr std::uint64_t complete_interval = 100;
 constexpr double narrowest_half = 4;  // diameters
-
-/// The double nearest to the value's first 15 digits: 1e-7, not 1.0000000000000001e-07.
-double rounded(double value) {
-  return std::isfinite(value) ? std::stod(finite_text("{:.15g}", value)) : value;
-}
 
 std::uint64_t raised(std::uint64_t sweeps, double factor) {
   const double product = static_cast<double>(sweeps) * factor;
@@ -96,20 +90,20 @@ class GrainLadder : LadderMaker {
   void rests(const QuietRest& rest) {
     for (const double factor : {100.0, 10.0}) {
       QuietRest rung = rest;
-      rung.kinetic_energy = rounded(rest.kinetic_energy * factor);
+      rung.kinetic_energy = rounded_to_15_digits(rest.kinetic_energy * factor);
       if (rung.kinetic_energy > 1) continue;
       ended_by(rung, finite_text("quiet below {:.3g} m g d", rung.kinetic_energy));
     }
     for (const double factor : {5.0, 25.0}) {
       QuietRest rung = rest;
-      rung.seconds = rounded(rest.seconds * factor);
+      rung.seconds = rounded_to_15_digits(rest.seconds * factor);
       ended_by(rung, finite_text("quiet for {:.3g} s", rung.seconds));
     }
   }
 
   void rests(const TimedRest& rest) {
     for (const double factor : {0.25, 0.5, 2.0, 4.0}) {
-      const TimedRest rung{rounded(rest.seconds * factor)};
+      const TimedRest rung{rounded_to_15_digits(rest.seconds * factor)};
       ended_by(rung, finite_text("{:.3g} s after the floor", rung.seconds));
     }
   }
@@ -122,14 +116,15 @@ class GrainLadder : LadderMaker {
     // The cap must leave as much time before the rest as the scene's does.
     const double own = std::visit([](const auto& choice) { return choice.seconds; }, grains_.rest);
     const double extra_time = std::max(0.0, rest.seconds - own);
-    rung.most_seconds = rounded(std::min(grains_.most_seconds + extra_time, most_seconds));
+    rung.most_seconds =
+        rounded_to_15_digits(std::min(grains_.most_seconds + extra_time, most_seconds));
     add(PilotSetting::Part::stop, std::move(name), rung);
   }
 
   void time_steps() {
     for (const double factor : {0.5, 2.0, 4.0}) {
       DiscreteElement rung = grains_;
-      const double steps = rounded(steps_of_contact(grains_) * factor);
+      const double steps = rounded_to_15_digits(steps_of_contact(grains_) * factor);
       if (steps < 40 || steps > 1e6) continue;
       rung.steps_per_contact = steps;
       add(PilotSetting::Part::step, finite_text("{:g} steps per contact", steps), rung);
@@ -142,7 +137,7 @@ class GrainLadder : LadderMaker {
       const auto scale = [&](ContactLaw& law) {
         std::visit(
             [&](auto& springs) {
-              springs.stiffness = rounded(springs.stiffness * factor);
+              springs.stiffness = rounded_to_15_digits(springs.stiffness * factor);
               allowed = allowed && springs.stiffness >= 1 && springs.stiffness <= 1e12;
             },
             law);
@@ -177,7 +172,7 @@ class RelaxationLadder : LadderMaker {
   void stops(const MeanHeightStop& rule) {
     for (const double factor : {100.0, 10.0, 0.1, 0.01}) {
       MeanHeightStop rung = rule;
-      rung.eta = rounded(rule.eta * factor);
+      rung.eta = rounded_to_15_digits(rule.eta * factor);
       if (rung.eta < 1) stop(rung, factor, finite_text("eta = {:.3g}", rung.eta));
     }
     intervals(rule);
@@ -186,7 +181,7 @@ class RelaxationLadder : LadderMaker {
   void stops(const HeightChangeStop& rule) {
     for (const double factor : {100.0, 10.0, 0.1, 0.01}) {
       HeightChangeStop rung = rule;
-      rung.change = rounded(rule.change * factor);
+      rung.change = rounded_to_15_digits(rule.change * factor);
       if (rung.change <= 1) stop(rung, factor, finite_text("change = {:.3g} d", rung.change));
     }
     intervals(rule);
@@ -207,7 +202,7 @@ class RelaxationLadder : LadderMaker {
   void stops(const BulkFractionStop& rule) {
     for (const double factor : {10.0, 0.1}) {
       BulkFractionStop rung = rule;
-      rung.change = rounded(rule.change * factor);
+      rung.change = rounded_to_15_digits(rule.change * factor);
       stop(rung, factor, finite_text("change = {:.3g}", rung.change));
     }
     for (const double eta : {1e-5, 1e-6}) {
@@ -244,7 +239,7 @@ class RelaxationLadder : LadderMaker {
       for (const double factor : {0.5, 2.0}) {
         AnyMove rung = move;
         double& value = rung.*number.member;
-        value = rounded(value * factor);
+        value = rounded_to_15_digits(value * factor);
         if (!number.form.range.contains(value)) continue;
         // A step may not pass the smallest sphere of a mixture.
         if (!scene_.kinds.empty() && rung.max_step > 2 * range_of(scene_.kinds).least) continue;
@@ -331,14 +326,15 @@ std::vector<OtherWindow> other_windows(const Scene& scene) {
     std::visit(
         [&](auto window) {
           const double quarter = 0.25 * (window.high - window.low);
-          window.low = rounded(window.low + quarter);
-          window.high = rounded(window.high - quarter);
+          window.low = rounded_to_15_digits(window.low + quarter);
+          window.high = rounded_to_15_digits(window.high - quarter);
           if (window.low < window.high) add(*bulk, "_narrow", window, bulk->taper);
         },
         bulk->window);
     if (const auto* quantiles = std::get_if<QuantileWindow>(&bulk->window)) {
       add(*bulk, "_wide",
-          QuantileWindow{rounded(0.5 * quantiles->low), rounded(0.5 * (1 + quantiles->high))},
+          QuantileWindow{rounded_to_15_digits(0.5 * quantiles->low),
+                         rounded_to_15_digits(0.5 * (1 + quantiles->high))},
           bulk->taper);
     }
     if (bulk->taper == 0 && can_taper(bulk->window))

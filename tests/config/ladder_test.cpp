@@ -47,6 +47,14 @@ TEST_CASE("A ladder of a mean-height stop goes up and down from the scene's eta"
   CHECK(complete.max_sweeps == 100 * scene.relax.stop.max_sweeps);
 }
 
+TEST_CASE("A ladder has settings below the least normal double") {
+  Scene scene = shipped("quickstart.json");
+  std::get<MeanHeightStop>(scene.relax.stop.rule).eta = 1e-307;
+  const std::vector<PilotSetting> settings = ladder(scene);
+  const Stop& complete = relax_of(settings[most_complete(settings).last]).stop;
+  CHECK(std::get<MeanHeightStop>(complete.rule).eta == Approx(1e-309).epsilon(1e-10));
+}
+
 TEST_CASE("A published bulk-fraction stop is compared with a complete one by mean height") {
   const std::vector<PilotSetting> settings =
       ladder(shipped("rosato-dybenko-2010/fig4-published-stop.json"));
