@@ -181,9 +181,8 @@ std::string lines_of_points(const ResultsFile& file, std::size_t width, Glyphs g
               width);
   for (std::size_t point = 0; point < curves.size(); ++point) {
     const std::string line = sparkline(curves[point], range.low, range.high, longest_line, glyphs);
-    std::string label = labels[point];
-    if (width_of(label) > longest) label = label.substr(0, longest);
-    label.append(longest - std::min(longest, width_of(label)), ' ');
+    std::string label(first_characters(labels[point], longest));
+    label.append(longest - width_of(label), ' ');
     const std::string blanks(longest_line - width_of(line), ' ');
     text += fmt::format("  {}  {}{}  {}\n", label, line, blanks, ends[point]);
   }

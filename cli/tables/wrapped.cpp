@@ -7,6 +7,10 @@ namespace {
 
 constexpr std::size_t none = std::string_view::npos;
 
+bool begins_character(char c) {
+  return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+}
+
 /// Indent of continuation lines, in bytes.
 std::size_t hanging_indent(std::string_view line, std::size_t width) {
   const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
@@ -56,8 +60,15 @@ std::string wrapped_line(std::string_view line, std::size_t width) {
 }  // namespace
 
 std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+}
+
+std::string_view first_characters(std::string_view text, std::size_t width) {
+  std::size_t end = 0;
+  for (; end < text.size(); ++end) {
+    if (begins_character(text[end]) && width-- == 0) break;
+  }
+  return text.substr(0, end);
 }
 
 std::string wrapped(std::string_view text, std::size_t width) {

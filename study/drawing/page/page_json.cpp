@@ -29,9 +29,16 @@ Json page_numbers(std::span<const double> values) {
 }
 
 Json page_text(std::string_view text, std::size_t longest) {
-  std::string shown = printable(text.substr(0, longest));
-  if (text.size() > longest) shown += "...";
-  return shown;
+  if (text.size() <= longest) return printable(text);
+  constexpr std::size_t longest_character = 4;  // bytes, in UTF-8
+  const auto continues = [&](std::size_t byte) {
+    return (static_cast<unsigned char>(text[byte]) & 0xc0) == 0x80;
+  };
+  std::size_t end = longest;
+  while (end > 0 && longest - end < longest_character && continues(end)) --end;
+  // Bytes without the beginning of a character are no UTF-8.
+  if (continues(end)) end = longest;
+  return printable(text.substr(0, end)) + "...";
 }
 
 Json page_value(const Json& value) {

@@ -15,7 +15,7 @@ namespace jostle::inline study {
 Json page_number(double value);
 Json page_numbers(std::span<const double> values);
 
-/// The text by printable(), cut after `longest` bytes.
+/// The text by printable(), cut after the last whole character within `longest` bytes.
 Json page_text(std::string_view text, std::size_t longest = 4000);
 
 /// The value with all its texts, keys too, as page_text.

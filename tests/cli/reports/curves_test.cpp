@@ -6,6 +6,10 @@
 #include <vector>
 
 #include "cli/tables/wrapped.hpp"
+#include "results/run/live_run.hpp"
+#include "results/run/run_store.hpp"
+#include "tests/results/synthetic.hpp"
+#include "tests/results/temporary_folder.hpp"
 
 using namespace jostle;
 
@@ -78,4 +82,19 @@ TEST_CASE("A line of a sweep point has a character a place on the axis") {
   const double nan = std::nan("");
   CHECK(sparkline(std::vector{0.0, nan, 7.0}, 0, 7, 3, Glyphs::ascii) == "_ %");
   CHECK(sparkline({}, 0, 1, 9, Glyphs::ascii).empty());
+}
+
+TEST_CASE("A long label of a sweep point is cut after a whole character") {
+  const TemporaryFolder folder;
+  Study study = synthetic::study({.points = 2, .realizations = 1});
+  std::string letters;
+  for (int i = 0; i < 30; ++i) letters += "\xce\xb5";
+  study.points[0].label = letters;
+  study.points[1].label = "x" + letters;
+  const auto store = RunStore::create(folder / "a.h5", study, {}, synthetic::provenance());
+  for (const std::uint32_t point : {0u, 1u}) synthetic::run(*store, study, {point, 0});
+  const std::string shown =
+      compaction_curves(live_results(folder / "a.h5", Content::everything), 40, Glyphs::ascii);
+  CHECK(shown.find("  " + letters.substr(0, 40) + "  ") != std::string::npos);
+  CHECK(shown.find("  x" + letters.substr(0, 38) + "  ") != std::string::npos);
 }

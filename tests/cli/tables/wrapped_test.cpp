@@ -35,4 +35,7 @@ TEST_CASE("No line is longer than asked for, and no word is lost") {
 
 TEST_CASE("Width is in characters") {
   CHECK(width_of("\xce\xb5 = 0.1") == 7);
+  CHECK(first_characters("\xce\xb5\xce\xb5 = 0.1", 2) == "\xce\xb5\xce\xb5");
+  CHECK(first_characters("\xce\xb5", 2) == "\xce\xb5");
+  CHECK(first_characters("\xce\xb5", 0).empty());
 }

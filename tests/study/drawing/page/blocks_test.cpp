@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "study/drawing/figures/table_view.hpp"
+#include "study/drawing/page/page_json.hpp"
 
 using namespace jostle;
 
@@ -20,4 +21,16 @@ TEST_CASE("A cell shows a lower bound with its sign, and a value with its error"
   const TableView table(drawn);
   CHECK(value_cell(table, "sigma") == "≥ 0.011 diameter");
   CHECK(value_cell(table, "value") == "3.250(20) diameter");
+}
+
+TEST_CASE("A long text of a page ends with a whole character") {
+  const auto shown = [](std::string_view text, std::size_t longest) {
+    return page_text(text, longest).text();
+  };
+  CHECK(shown("a\xce\xb5", 3) == "a\xce\xb5");
+  CHECK(shown("a\xce\xb5z", 3) == "a\xce\xb5...");
+  CHECK(shown("a\xce\xb5z", 2) == "a...");
+  CHECK(shown("\xe2\x89\xa5z", 2) == "...");
+  CHECK(shown("\xf0\x9f\x8e\xb2z", 3) == "...");
+  CHECK(shown("\x80\x80\x80\x80\x80\x80\x80", 6) == R"(\x80\x80\x80\x80\x80\x80...)");
 }
