@@ -124,11 +124,18 @@ double Json::number() const {
   wrong_kind("a number", *this);
 }
 
+std::string inexact_whole_text(double number) {
+  return fmt::format(
+      "a whole number with a point or an exponent is exact only below 2^53, and this one was read "
+      "as {}: write it without point and exponent",
+      static_cast<std::uint64_t>(number));
+}
+
 std::uint64_t Json::whole_number() const {
   if (const auto* whole = std::get_if<std::uint64_t>(&value_)) return *whole;
   const double value = number();
-  // 2^64 is the first double that no longer fits.
-  if (value >= 0 && value < 0x1p64) return static_cast<std::uint64_t>(value);
+  if (value >= 0 && value < exact_doubles) return static_cast<std::uint64_t>(value);
+  if (value >= exact_doubles && value < 0x1p64) throw JsonError(inexact_whole_text(value));
   throw JsonError(fmt::format("{} is no whole number from 0 to 2^64 - 1", dump()));
 }
 

@@ -71,6 +71,7 @@ class Json {
   /// The value as what it is; JsonError where it is something else.
   bool boolean() const;
   double number() const;
+  /// Also of a number with a point or an exponent, below exact_doubles.
   std::uint64_t whole_number() const;
   std::int64_t signed_number() const;  // An integer below 2^63
   const std::string& text() const;
@@ -123,6 +124,12 @@ struct Json::Member {
   Json value;
   bool operator==(const Member& rhs) const = default;
 };
+
+/// 2^53. Every whole number below it is a double, and no other whole number rounds to that double.
+inline constexpr double exact_doubles = 0x1p53;
+
+/// The fault of a whole number from exact_doubles to 2^64 that has a point or an exponent.
+std::string inexact_whole_text(double number);
 
 /// The version of the library that parses and prints: "3.11.2".
 std::string json_library_version();

@@ -102,8 +102,13 @@ std::optional<std::uint64_t> Reader::whole_number(std::uint64_t least, std::uint
     fault(fmt::format("{} is not whole: expected {}", value().dump(), expected));
     return std::nullopt;
   }
+  const bool is_exact = value().is_number_integer() || number < exact_doubles;
   // 2^64 is the first double that no longer fits.
-  const bool fits = number >= 0 && (value().is_number_integer() || number < 0x1p64);
+  if (!is_exact && number < 0x1p64 && number <= static_cast<double>(most)) {
+    fault(inexact_whole_text(number));
+    return std::nullopt;
+  }
+  const bool fits = number >= 0 && is_exact;
   const std::uint64_t whole = fits ? value().whole_number() : 0;
   if (fits && whole >= least && whole <= most) return whole;
   fault(fmt::format("{} is out of range: expected {}", canonical_text(value()), expected));

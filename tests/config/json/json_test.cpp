@@ -75,6 +75,10 @@ TEST_CASE("A value of another kind is named") {
   CHECK_THROWS_WITH(Json::array({1}).at(std::size_t{1}), "a list of 1 has no element 1");
   CHECK_THROWS_AS(Json(-1).whole_number(), JsonError);
   CHECK_THROWS_AS(Json(0x1p64).whole_number(), JsonError);
+  CHECK(Json(0x1p53 - 1).whole_number() == 9007199254740991u);
+  CHECK(Json::parse("9007199254740993").whole_number() == 9007199254740993u);
+  CHECK_THROWS_WITH(Json::parse("9007199254740993.0").whole_number(),
+                    inexact_whole_text(9007199254740992));
 }
 
 }  // namespace jostle
