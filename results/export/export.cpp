@@ -135,7 +135,8 @@ std::vector<ExportedFile> exported_files(ExportFormat format, const std::string&
   if (format == ExportFormat::extended_xyz) return {{path, extended_xyz_text(frames)}};
   if (format == ExportFormat::lammps) return {{path, lammps_dump_text(frames)}};
   if (frames.size() == 1) return {{path, vtk_points_text(frames.front())}};
-  const std::filesystem::path stem = std::filesystem::path(path).replace_extension();
+  std::filesystem::path stem(path);
+  if (stem.extension() == ".vtp" || stem.extension() == ".pvd") stem.replace_extension();
   std::vector<ExportedFile> files;
   std::vector<std::pair<std::uint64_t, std::string>> listed;
   for (const ExportedFrame& frame : frames) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 #include <stdexcept>
+#include <string_view>
 
 #include "engine/bed/boundary.hpp"
 #include "results/disk/output_path.hpp"
@@ -106,6 +107,15 @@ void write_trajectory(hid_t file, Frames frames) {
     write_vectors(trajectory, frames, i, times);
 }
 
+bool have_equal_columns(const ExportedFrame& a, const ExportedFrame& b) {
+  const auto is_alike = [](const ParticleColumn& one, const ParticleColumn& other) {
+    return one.name == other.name && one.values.index() == other.values.index();
+  };
+  const auto name_of = [](const VectorColumn& vectors) { return std::string_view(vectors.name); };
+  return std::ranges::equal(a.columns, b.columns, is_alike) &&
+         std::ranges::equal(a.vectors, b.vectors, {}, name_of, name_of);
+}
+
 }  // namespace
 
 void write_h5md(const std::string& path, Frames frames) {
@@ -121,6 +131,11 @@ void write_h5md(const std::string& path, Frames frames) {
       throw std::invalid_argument(
           fmt::format("H5MD keeps frames of one kind of container: frame {} has another than the "
                       "first; export them one by one",
+                      frame.tap));
+    if (!have_equal_columns(frame, frames.front()))
+      throw std::invalid_argument(
+          fmt::format("H5MD keeps frames of the same columns: frame {} has others than the first; "
+                      "export them one by one",
                       frame.tap));
   }
   TemporaryFile temporary(output_path(path));

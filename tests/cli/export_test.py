@@ -105,6 +105,11 @@ class Export(Case):
         top = max(z for _, _, z in self.centres()) + 0.5
         self.assertAlmostEqual(sum(arrays["voronoi_volume"]) / (16 * top), 1, places=10)
 
+    def test_a_name_with_a_dot_is_kept_whole(self):
+        for name in ("eps0.02", "eps0.05"):
+            self.jostle("export", "tiny.h5", "--format", "vtp", "--tap", "0,4", "-o", name)
+            self.assertTrue((self.folder / f"{name}_tap4.vtp").exists())
+
     def test_several_taps_in_vtk_are_listed_in_time(self):
         self.jostle("export", "tiny.h5", "--format", "vtp", "--tap", "0,4")
         root = xml.etree.ElementTree.parse(self.folder / "tiny_point0.pvd").getroot()

@@ -138,6 +138,18 @@ TEST_CASE("H5MD keeps frames of one kind of container") {
                     Contains("frame 1 has another than the first"));
 }
 
+TEST_CASE("H5MD keeps frames of the same columns") {
+  const TemporaryFolder folder;
+  std::vector<ExportedFrame> frames = {one_sphere(0), one_sphere(1)};
+  frames[0].columns = {{"mass", std::vector<double>{1}}};
+  frames[1].columns = {{"mass", std::vector<std::uint32_t>{1}}};
+  CHECK_THROWS_WITH(write_h5md(folder / "a.h5md", frames),
+                    Contains("frame 1 has others than the first"));
+  frames[1].columns.clear();
+  CHECK_THROWS_WITH(write_h5md(folder / "a.h5md", frames),
+                    Contains("frame 1 has others than the first"));
+}
+
 TEST_CASE("a LAMMPS dump holds a frame a tap, to the last bit") {
   const Packing packing = hard_to_write();
   const std::vector<ExportedFrame> frames = {one_sphere(0),
