@@ -104,7 +104,7 @@ def _output(scene: Scene | Path, output: Path | None) -> str:
     else:
         named = "scene"  # the program reports what cannot be read
         with contextlib.suppress(OSError, ValueError, RecursionError), \
-                open(path_text(scene, "scene"), encoding="utf-8") as file:
+                open(path_text(scene, "scene"), encoding="utf-8-sig") as file:
             read = json.load(file)
             named = read.get("name", named) if isinstance(read, dict) else named
     # A name that the program refuses must not lead anywhere before it does.
@@ -191,8 +191,9 @@ def _paths(results: Results | Path | Sequence[Path]) -> list[str]:
 
 
 def _live(results: Results | Path | Sequence[Path], live: bool) -> bool:
-    """With checkpoints where it is asked for, or where results were opened so."""
-    return live or isinstance(results, Results) and results.live
+    """With checkpoints where it is asked for, or where some results were opened so."""
+    opened = results if isinstance(results, (list, tuple)) else [results]
+    return live or any(isinstance(one, Results) and one.live for one in opened)
 
 
 @takes_arguments

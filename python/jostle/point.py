@@ -303,7 +303,7 @@ class Point:
         """[sphere]: the diameters of a realization's spheres; 1 of equal spheres. NaN of a realization that draws
         its own and has not begun, or has failed."""
         realization = whole_number(realization, "realization")
-        if realization >= self.n_realizations:
+        if not 0 <= realization < self.n_realizations:
             raise NotThere(f"{self._results.path}: no realization {realization}: there are {self.n_realizations}")
         if self._mixture is None:
             return np.ones(self.n_spheres)
@@ -315,11 +315,10 @@ class Point:
     def contacts(self, realization: int = 0, tap: int | None = None) -> Contacts:
         """Contacts of grains whose snapshots keep them: those with force, after a tap (None: the last that is
         kept)."""
-        if "contacts" not in self.scene["snapshots"]["keep"] or \
-                "discrete_element" not in self.scene["engine"]:
+        group = self._particles(realization)
+        if "contacts" not in group:
             raise NotThere(f"{self._results.path}: no contacts of sweep point {self.index}; they are kept "
                            "of discrete_element where \"snapshots\" keeps \"contacts\"")
-        group = self._particles(realization)
         return contacts_of(group, self.diameters(realization), self._kept_tap(group, tap))
 
     def _kept_tap(self, group: h5py.Group, tap: int | None) -> int:

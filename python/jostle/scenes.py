@@ -80,7 +80,7 @@ def _check_by_schema(scene: Scene | Path, missing: ProgramMissing) -> Checked:
         if isinstance(scene, Mapping):
             value = json.loads(scene_text(scene))
         else:
-            value = json.loads(pathlib.Path(path_text(scene, "scene")).read_text(encoding="utf-8"))
+            value = json.loads(pathlib.Path(path_text(scene, "scene")).read_text(encoding="utf-8-sig"))
     except JostleError:
         raise
     except (ValueError, RecursionError) as error:

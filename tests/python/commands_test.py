@@ -33,6 +33,10 @@ class Run(Case):
         self.addCleanup(results.close)
         return results
 
+    def test_a_scene_that_begins_with_a_byte_order_mark_has_its_name(self):
+        pathlib.Path("marked.json").write_text("\ufeff" + json.dumps(changed(SHORT, name="named")), encoding="utf-8")
+        self.assertEqual(pathlib.Path(self.run_scene("marked.json").path).name, "named.h5")
+
     def test_points_are_numbers_even_where_a_value_is_the_number_of_another(self):
         path = made(changed(SHORT, name="lifts", sweep={"/protocol/0/tap/dilate": [1, 0.1]}))
         results = self.open(path)
@@ -188,6 +192,7 @@ class Live(Case):
             self.assertNotEqual(live.digest(), bare.digest())
             fitted = jostle.fit(live, "mean_height", model="kww", range="1:30")
             self.assertEqual(len(fitted), 1)
+            self.assertEqual(len(jostle.analyse([live], "steady", observable="mean_height", store=False)), 1)
             process.kill()
             process.wait()
 

@@ -96,6 +96,17 @@ class Read(Case):
         np.testing.assert_array_equal(results.contacts().first, results.contacts(0, 0, 2).first)
         self.assertRaisesRegex(jostle.NotThere, "tap 1; kept: 0, 2", results.contacts, 0, 0, 1)
 
+    def test_contacts_are_those_of_the_file_where_the_engine_is_swept(self):
+        results = self.open(made(changed(GRAINS, name="engines", engine=None, sweep={
+            "/engine": ["monte_carlo", {"discrete_element": {}}]}, protocol=[{"tap": {"lift": 0.1}, "count": 2}])))
+        self.assertGreater(len(results.contacts(1).first), 60)
+        self.assertRaisesRegex(jostle.NotThere, "no contacts of sweep point 0", results.contacts, 0)
+
+    def test_diameters_are_of_a_realization_that_there_is(self):
+        for realization in (-1, 3):
+            self.assertRaisesRegex(jostle.NotThere, f"no realization {realization}",
+                                   self.results.points[0].diameters, realization)
+
     def test_force_moments_of_a_mixture_have_the_arms_of_its_radii(self):
         scene = changed(GRAINS, realizations=1, container={"sides": "periodic", "width": 6}, spheres=[
             {"name": "small", "count": 50}, {"name": "large", "count": 8, "diameter": 1.8, "density": 0.5}],
