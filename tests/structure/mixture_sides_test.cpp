@@ -3,6 +3,8 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <set>
+#include <string>
 #include <string_view>
 
 #include "engine/bed/boundary.hpp"
@@ -313,4 +315,22 @@ TEST_CASE("gaps count the more, the less of the shell of a partner's centres sid
   CHECK(values(all[0], "gap_exponent")[0] ==
         Approx(gap_exponent(gaps, 0.01, 0.5, weights)).epsilon(1e-9));
   CHECK(std::abs(values(all[0], "gap_exponent")[0] - gap_exponent(gaps, 0.01, 0.5)) > 0.01);
+}
+
+TEST_CASE("partial pairs of kinds whose names join to one are all there") {
+  Packing packing = random_mixture(PeriodicBox{8, 8}, graded_diameters(80, 0.8, 1.2), 6, 31);
+  std::vector<std::uint32_t> kinds(80);
+  for (std::uint32_t i = 0; i < 80; ++i) kinds[i] = i % 4;
+  packing.sizes = std::make_shared<const Sizes>(
+      diameters_of(*packing.sizes), kinds,
+      std::vector<SphereKind>{{"a", 1}, {"b_c", 1}, {"a_b", 1}, {"c", 1}});
+  StructureSettings settings;
+  settings.pair_correlation.emplace();
+  const auto all = measure(packing, settings, points);
+  std::set<std::string> names;
+  for (const auto& quantity : all.at(0).quantities)
+    if (quantity.name.starts_with("g_")) names.insert(quantity.name);
+  CHECK(names.size() == 10);
+  CHECK(names.contains("g_a_b_c"));
+  CHECK(names.contains("g_a_b_c_2"));
 }

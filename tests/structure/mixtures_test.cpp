@@ -4,8 +4,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
-#include <set>
-#include <string>
 #include <string_view>
 #include <voro++/voro++.hh>
 
@@ -358,24 +356,6 @@ TEST_CASE("structure: partial pairs refuse half periods and many kinds by name")
   for (int k = 0; k < 9; ++k) names.push_back({"kind_" + std::to_string(k), 1});
   packing.sizes = std::make_shared<const Sizes>(diameters_of(*packing.sizes), kinds, names);
   CHECK_THROWS_WITH(partial_correlations(packing, {.r_max = 2}), Contains("9 kinds"));
-}
-
-TEST_CASE("partial pairs of kinds whose names join to one are all there") {
-  Packing packing = random_mixture(PeriodicBox{8, 8}, graded_diameters(80, 0.8, 1.2), 6, 31);
-  std::vector<std::uint32_t> kinds(80);
-  for (std::uint32_t i = 0; i < 80; ++i) kinds[i] = i % 4;
-  packing.sizes = std::make_shared<const Sizes>(
-      diameters_of(*packing.sizes), kinds,
-      std::vector<SphereKind>{{"a", 1}, {"b_c", 1}, {"a_b", 1}, {"c", 1}});
-  StructureSettings settings;
-  settings.pair_correlation.emplace();
-  const auto all = measure(packing, settings, points);
-  std::set<std::string> names;
-  for (const auto& quantity : all.at(0).quantities)
-    if (quantity.name.starts_with("g_")) names.insert(quantity.name);
-  CHECK(names.size() == 10);
-  CHECK(names.contains("g_a_b_c"));
-  CHECK(names.contains("g_a_b_c_2"));
 }
 
 TEST_CASE("structure measures partial pairs between walls") {
