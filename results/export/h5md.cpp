@@ -108,8 +108,8 @@ void write_trajectory(hid_t file, Frames frames) {
 }
 
 bool have_equal_columns(const ExportedFrame& a, const ExportedFrame& b) {
-  const auto is_alike = [](const ParticleColumn& one, const ParticleColumn& other) {
-    return one.name == other.name && one.values.index() == other.values.index();
+  const auto is_alike = [](const ParticleColumn& lhs, const ParticleColumn& rhs) {
+    return lhs.name == rhs.name && lhs.values.index() == rhs.values.index();
   };
   const auto name_of = [](const VectorColumn& vectors) { return std::string_view(vectors.name); };
   return std::ranges::equal(a.columns, b.columns, is_alike) &&
