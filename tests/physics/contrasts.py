@@ -1,6 +1,6 @@
 """Contrasts of the reduced tables: means of points less means of others, variances pooled over all points of a
-column (Estimate.pooled), or each point's own (Welch 1947) where they differ. contrasts_of_beds.py has those of data
-bed by bed."""
+column (Estimate.pooled), or each point's own (Welch 1947) where they differ. contrasts_of_beds.py and
+contrasts_of_campaign.py have those of data bed by bed."""
 import re
 
 import numpy as np
@@ -79,10 +79,6 @@ def bell_top():
 
 def alpha_of_strengths():
     return column("pb6-8", 3, "10^3 alpha R", 3, lambda row: row[1] == "1000")
-
-
-def alpha_rises():
-    return [contrast(alpha_of_strengths(), [-1, 1 / 3, 1 / 3, 1 / 3], 3, True)]
 
 
 def alpha_falls():

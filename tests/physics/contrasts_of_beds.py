@@ -3,7 +3,7 @@ import numpy as np
 from scipy import stats
 
 from contrasts import contrast, top_of
-from distributions import label, numbers, point_of, series, spectrum, steady
+from distributions import label, numbers, point_of, series, steady
 from verdicts import Estimate
 
 SPHERE = np.pi / 6
@@ -319,49 +319,3 @@ def flattening():
     0.25."""
     return [Estimate.of(np.concatenate([rise_per_e_fold(point, MELTED, ORDERED) / 2 - rise_per_e_fold(point, LATE, None)
                                         for point in map(from_crystal, (0.2, 0.25))]))]
-
-
-CAMPAIGN = "pb-campaign"
-LOW, HIGH, FITTED = (0.002, 0.01), (0.1, 0.5), (0.002, 0.5)   # frequencies in 1/taps; drift lies below 0.002
-
-
-def log_power(strength, band):
-    """ln of frequency and of power in a band, [frequency] and [bed, frequency], at eps."""
-    frequency, power = spectrum(CAMPAIGN, point_of(CAMPAIGN, f"dilate = {strength}"))
-    chosen = (frequency >= band[0]) & (frequency <= band[1])
-    return np.log(frequency[chosen]), np.log(power[:, chosen])
-
-
-def effect_of_strength(band):
-    """Mean ln of the power at eps = 0.1 over that at 0.0025, beds in pairs."""
-    strong, weak = (log_power(strength, band)[1].mean(axis=1) for strength in (0.1, 0.0025))
-    pairs = min(len(strong), len(weak))
-    return strong[:pairs] - weak[:pairs]
-
-
-def high_frequencies_only():
-    """Half the effect at high frequencies, less and plus that at low ones: the latter is less than half the former."""
-    high, low = effect_of_strength(HIGH), effect_of_strength(LOW)
-    return [Estimate.of(high / 2 - low), Estimate.of(high / 2 + low)]
-
-
-def low_frequencies():
-    return [Estimate.of(effect_of_strength(LOW))]
-
-
-def high_frequencies():
-    return [Estimate.of(effect_of_strength(HIGH))]
-
-
-def slope_at_full_size(strength):
-    """The slope of ln power against ln frequency, its bins alike, beds of one strength."""
-    frequency, power = log_power(strength, FITTED)
-    return [Estimate.of([np.polyfit(frequency, bed, 1)[0] for bed in power])]
-
-
-def full_slope_05():
-    return slope_at_full_size(0.0025)
-
-
-def full_slope_32():
-    return slope_at_full_size(0.1)

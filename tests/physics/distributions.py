@@ -4,8 +4,13 @@ import numpy as np
 from reduce import REDUCED, read_table
 
 
+def realizations(run, point):
+    """The realizations of a sweep point that are at hand, ascending."""
+    return [int(row[1]) for row in read_table(REDUCED / run / "beds.csv")[1:] if row[0] == str(point)]
+
+
 def beds_of_point(run, point):
-    return sum(row[0] == str(point) for row in read_table(REDUCED / run / "beds.csv")[1:])
+    return len(realizations(run, point))
 
 
 def distribution(run, point, quantity):

@@ -4,12 +4,12 @@ import re
 import matplotlib
 import numpy as np
 
-from pictures import COLOURS, Picture, curves_of, value_of
+from pictures import COLOURS, Picture, curves_of
 from reduce import REDUCED, read_table
 from special_drawings import (PRINTED_LABEL, draw_ageing, draw_crystals, draw_densities, draw_free_volumes,
                               draw_increases, draw_layers, draw_map, draw_neighbours, draw_pores, draw_pours,
                               draw_snapshots, draw_spectra, draw_steady_crystals, draw_surface, draw_tails,
-                              draw_void_probability)
+                              draw_transverse, draw_vertical, draw_void_probability)
 from scores import (COMPATIBLE, DECIDED, NOT, QUALITATIVE, REPRODUCED, SILENT, UNDERPOWERED)
 
 matplotlib.use("svg")
@@ -25,8 +25,6 @@ PANELS = {
             [("pb2", 1, Picture(TAPS, "Phi_b", across=True))]],
     "pb4": [[("pb4-bell", 1, Picture(STRENGTH, "Phi_c", columns="3001")),
              ("pb4-hysteresis", 1, Picture(STRENGTH, "Phi_c"))]],
-    "pb6": [[("pb6-8", 1, Picture("height, diameters", PHI, across=True))]],
-    "pb7": [[("pb6-8", 2, Picture("distance to a wall, diameters", PHI, across=True))]],
     "pb-moves": [[("pb-moves", 1, Picture("d_max, diameters", "10^4 gain of Phi_c", across=True, log="x"))]],
     "pb-sides": [[("pb-sides", 1, Picture(TAPS, "Phi_c", across=True, log="x"))]],
     "dr2": [[("dr2-wide", 1, Picture(TAPS, PHI, across=True, log="x"))]],
@@ -74,8 +72,6 @@ def draw_curves(axes, parts):
     axes.set_yscale("log" if "y" in picture.log else "linear")
     axes.set(xlabel=picture.x, ylabel=picture.y)
     axes.margins(y=0.12)
-    if picture.x.startswith("distance to a wall"):
-        axes.axvline(3.5, color="k", linestyle=":", linewidth=.8, label="7 R")
     axes.legend(**({"ncols": 3, "loc": "lower center", "bbox_to_anchor": (0.5, 1.0)} if index > 5 else {}))
 
 
@@ -85,7 +81,8 @@ def save(figure, target):
 
 
 # figure: how many panels, and what draws them.
-SPECIAL = {"pb3": (2, draw_spectra), "pb5": (2, draw_ageing), "pb8": (2, draw_increases),
+SPECIAL = {"pb3": (2, draw_spectra), "pb5": (2, draw_ageing), "pb6": (1, draw_vertical),
+           "pb7": (1, draw_transverse), "pb8": (2, draw_increases),
            "pb9": (1, draw_void_probability), "pb10": (3, draw_pores), "dr1": (2, draw_snapshots),
            "dr5": (2, draw_crystals), "dr6": (4, draw_layers), "dr7": (1, draw_pours), "dr8": (1, draw_neighbours),
            "dr9": (1, draw_free_volumes), "dr15": (1, draw_map)}
@@ -119,7 +116,7 @@ def draw_strongest(target):
         figure, axes = pyplot.subplots(2, 3, figsize=(9, 4.6), layout="constrained")
         axes = axes.ravel()
         draw_curves(axes[0], PANELS["pb4"][0])
-        draw_curves(axes[1], PANELS["pb7"][0])
+        draw_transverse([axes[1]])
         draw_tails(axes[2])
         draw_densities(axes[3], (1,))
         draw_pours([axes[4]])
@@ -131,7 +128,7 @@ def draw_strongest(target):
         axes[5].set(xlabel="lift, diameters", ylabel=PHI)
         axes[5].legend()
         for panel, title in zip(axes, (
-                "PB 4: a bell, and denser beds on the way down", "PB 7: three layers at a wall",
+                "PB 4: a bell, and denser beds on the way down", "PB 7: three layers at the walls",
                 "PB 10: the tail of large pores shrinks", "DR 6: compatible with 0.567, 0.578, 0.597",
                 "DR 7: poured beds are looser with friction", "DR 4, 5: densest at a lift of 0.25 to 0.3")):
             panel.set_title(title)

@@ -19,7 +19,7 @@ from compaction_figures import (bell, bell_and_stop, compaction, fluctuations, h
 from grain_figures import both_engines, columns, poured, shaken, tapped
 from lift_figures import (best_lift, contacts, from_crystal, layers, lift_or_dilation,
                           published_rules, readings)
-from page_text import table, verdict_table
+from page_text import verdict_table
 from pictures import Picture, draw
 from runs import Run
 from structure_figures import periodic_profiles, pore_sizes, void_probability, wall_profiles

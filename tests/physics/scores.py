@@ -2,7 +2,6 @@
 
 Each statement is tested at 5 %; false_discoveries() gives what that means for the page as a whole."""
 import dataclasses
-import pathlib
 import re
 
 import numpy as np
@@ -10,8 +9,9 @@ from scipy import stats
 
 import contrasts
 import contrasts_of_beds
+import contrasts_of_campaign
 from reduce import REDUCED, read_table
-from verdicts import LEVEL, Estimate, detectable, p_beyond, p_text, p_two_sided, p_within
+from verdicts import LEVEL, Estimate, detectable, p_beyond, p_two_sided, p_within
 
 REPRODUCED, COMPATIBLE, QUALITATIVE = "reproduced", "compatible", "qualitatively"
 NOT, UNDERPOWERED, SILENT = "not reproduced", "underpowered", "not in the paper"
@@ -70,7 +70,8 @@ def from_half_width(value, half, dof):
 def of_contrast(claim):
     """The estimates of the contrast that a claim names as its source."""
     name = claim.source[1:]
-    return getattr(contrasts if hasattr(contrasts, name) else contrasts_of_beds, name)()
+    module = next(module for module in (contrasts, contrasts_of_beds, contrasts_of_campaign) if hasattr(module, name))
+    return getattr(module, name)()
 
 
 def row_of(claim):

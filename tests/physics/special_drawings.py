@@ -3,7 +3,8 @@ import numpy as np
 from matplotlib.collections import EllipseCollection
 from scipy import optimize, stats
 
-from contrasts_of_beds import CAMPAIGN, CRYSTAL, FRICTIONS, LIFTS, ROUGH, from_crystal, whole_bed
+from contrasts_of_beds import CRYSTAL, FRICTIONS, LIFTS, ROUGH, from_crystal, whole_bed
+from contrasts_of_campaign import CAMPAIGN, DRAWN, LAST, STRENGTHS, WIDTH, numbers_at, point_at
 from distributions import beds_of_point, distribution, label, numbers, series, spectrum, steady
 from pictures import COLOURS, value_of
 from reduce import REDUCED, read_table
@@ -16,17 +17,49 @@ PRINTED_LABEL = "the paper"
 PRINTED = ((0, 0.567), (50, 0.578), (250, 0.597))
 
 
+def draw_profile(panel, quantity, mark_fits):
+    """A profile of the poured bed and after 4000 taps, eps = 0.1, with eq. 7 of each where asked for."""
+    point = point_at(DRAWN)
+    found = distribution(CAMPAIGN, point, quantity)
+    for tap, colour, style in ((0, COLOURS[1], ":"), (LAST, COLOURS[0], "-")):
+        x, mean, _ = found[tap]
+        panel.plot(x, mean, style, color=colour, label=f"tap {tap}")
+        if mark_fits:
+            phi_0, alpha, beta, z_star = (numbers(CAMPAIGN, point, f"profile/eq7_{name}", tap).mean()
+                                          for name in ("phi_0", "alpha", "beta", "z_star"))
+            z = 2 * x[x > 2.5]  # radii
+            panel.plot(z / 2, (phi_0 - alpha * z) / (1 + np.exp(beta * (z - z_star))), "k", linewidth=.7,
+                       label="eq. 7" if tap else None)
+    panel.set(ylabel="packing fraction")
+
+
+def draw_vertical(axes):
+    """[PB] 6: packing fraction against height."""
+    draw_profile(axes[0], "profile/phi", True)
+    axes[0].set(xlabel="height, diameters", xlim=(0, 18))
+    axes[0].legend()
+
+
+def draw_transverse(axes):
+    """[PB] 7: packing fraction across the box, lines at 7 R from the walls."""
+    draw_profile(axes[0], "sides/phi_xy", False)
+    for place in (3.5, WIDTH - 3.5):
+        axes[0].axvline(place, color="k", linestyle=":", linewidth=.8)
+    axes[0].set(xlabel="x, diameters (7 R from the walls: dotted)", xlim=(0, WIDTH))
+    axes[0].legend(loc="lower center")
+
+
 def draw_increases(axes):
     """[PB] 8: lateral and central increase of four strengths."""
-    header, *rows = read_table(REDUCED / "pb6-8" / "3.csv")
-    for panel, name, title in zip(axes, ("d Phi lateral", "central"), ("lateral", "central")):
-        at = header.index(name)
-        for k, point in enumerate(dict.fromkeys(row[0] for row in rows)):
-            taps, values = zip(*((float(row[1]), value_of(row[at])[0]) for row in rows if row[0] == point))
-            panel.plot(taps, values, marker=MARKS[k], color=COLOURS[k], markersize=3,
-                       label=point.replace("dilate", "eps"))
+    taps = sorted({int(row[2]) for row in read_table(REDUCED / CAMPAIGN / "structure.csv")[1:]})
+    for panel, side in zip(axes, ("lateral", "central")):
+        for k, strength in enumerate(STRENGTHS):
+            beds = [Estimate.of(numbers_at(strength, f"sides/{side}_change", tap)) for tap in taps]
+            panel.errorbar(taps, [bed.value for bed in beds], [bed.half_width() for bed in beds], marker=MARKS[k],
+                           color=COLOURS[k], markersize=3, capsize=1, elinewidth=.6,
+                           label=f"eps^(1/2) = {strength**0.5:.3g}")
         panel.set_xscale("symlog", linthresh=1)
-        panel.set(xlabel="taps", ylabel="increase of Phi", title=title, ylim=(0, 0.11))
+        panel.set(xlabel="taps", ylabel="increase of Phi", title=side, ylim=(0, 0.13))
     axes[0].legend()
 
 
