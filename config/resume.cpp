@@ -89,8 +89,9 @@ std::optional<std::string> changed_taps(const std::vector<ProtocolLine>& was,
   return std::nullopt;
 }
 
-/// Taps may be chosen beyond those of the run. `key`: "snapshot of tap".
-std::optional<std::string> changed_choice(const char* key, std::uint64_t last,
+/// Taps may be chosen from `first` on, in words `from_first`. `key`: "snapshot of tap".
+std::optional<std::string> changed_choice(const char* key, std::uint64_t first,
+                                          const std::string& from_first,
                                           const std::vector<std::uint64_t>& taps_before,
                                           const std::vector<std::uint64_t>& taps_after) {
   for (const std::uint64_t tap : taps_before) {
@@ -99,17 +100,21 @@ std::optional<std::string> changed_choice(const char* key, std::uint64_t last,
     }
   }
   for (const std::uint64_t tap : taps_after) {
-    if (tap > last) break;
+    if (tap >= first) break;
     if (!std::binary_search(taps_before.begin(), taps_before.end(), tap)) {
-      return fmt::format("a {} {} was added: only those after the last tap, {}, can be", key, tap,
-                         last);
+      return fmt::format("a {} {} was added: only those {} can be", key, tap, from_first);
     }
   }
   return std::nullopt;
 }
 
+std::string after_the_last(std::uint64_t last) {
+  return fmt::format("after the last tap, {},", last);
+}
+
 std::optional<std::string> changed_snapshots(const Scene& was, const Scene& is) {
-  return changed_choice("snapshot of tap", total_taps(was.protocol),
+  const std::uint64_t last = total_taps(was.protocol);
+  return changed_choice("snapshot of tap", last + 1, after_the_last(last),
                         snapshot_taps(was.snapshots, total_taps(was.protocol)),
                         snapshot_taps(is.snapshots, total_taps(is.protocol)));
 }
@@ -120,10 +125,13 @@ std::optional<std::string> changed_motion(const Scene& was, const Scene& is) {
   const std::uint64_t last = total_taps(was.protocol);
   const MotionSettings settings_before = motion_settings(*was.motion, last),
                        settings_after = motion_settings(*is.motion, total_taps(is.protocol));
+  // The state after the last tap is kept: a resumed run begins an origin there.
   auto changed =
-      changed_choice("motion origin at tap", last, settings_before.origins, settings_after.origins);
+      changed_choice("motion origin at tap", last, fmt::format("from the last tap, {}, on", last),
+                     settings_before.origins, settings_after.origins);
   return changed ? changed
-                 : changed_choice("motion lag of", last, settings_before.lags, settings_after.lags);
+                 : changed_choice("motion lag of", last + 1, after_the_last(last),
+                                  settings_before.lags, settings_after.lags);
 }
 
 /// Values may be added to a sweep: notes the points that are gone.

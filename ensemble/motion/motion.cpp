@@ -200,9 +200,16 @@ std::vector<double> motion_values(const MotionSettings& settings, std::span<cons
 
 void follow_motion(const MotionSettings& settings, const Packing& bed, std::uint64_t tap,
                    MotionState& state) {
+  const auto begin_origin = [&](std::uint64_t waiting_time) {
+    if (std::ranges::binary_search(settings.origins, waiting_time) &&
+        (state.origins.empty() || state.origins.back().tap < waiting_time))
+      state.origins.push_back({waiting_time, state.unwrapped, {}});
+  };
   if (tap == 0) {
     state = {};
     state.unwrapped = bed.centres;
+  } else {
+    begin_origin(tap - 1);  // chosen after the run had stopped at it
   }
   unwrap(bed, state);
   std::span<const std::uint32_t> kinds;
@@ -214,8 +221,7 @@ void follow_motion(const MotionSettings& settings, const Packing& bed, std::uint
                       layers_of(heights_of(origin.centres, bed.container), settings.layers), kinds);
     origin.values.insert(origin.values.end(), values.begin(), values.end());
   }
-  if (std::ranges::binary_search(settings.origins, tap))
-    state.origins.push_back({tap, state.unwrapped, {}});
+  begin_origin(tap);
 }
 
 }  // namespace jostle::inline ensemble

@@ -108,7 +108,8 @@ struct MotionState {
   bool operator==(const MotionState&) const = default;
 };
 
-/// Takes in the bed at rest after `tap`, which follows on the last one; tap 0 begins.
+/// Takes in the bed at rest after `tap`, which follows on the last one; tap 0 begins. An origin at
+/// the tap before that is missing begins there.
 void follow_motion(const MotionSettings& settings, const Packing& bed, std::uint64_t tap,
                    MotionState& state);
 

@@ -126,7 +126,7 @@ void validate(const Study& study, const FileProvenance& provenance) {
 
 namespace {
 
-/// Up to the last tap of its realization.
+/// Up to the last tap of its realization, where an origin may be chosen later.
 bool is_followed(const MotionState& motion, const MotionSettings& settings, std::uint64_t rows,
                  std::uint32_t n_spheres) {
   const auto are_there = [&](const std::vector<Vec3>& centres) {
@@ -134,8 +134,10 @@ bool is_followed(const MotionState& motion, const MotionSettings& settings, std:
   };
   const auto passed = static_cast<std::size_t>(std::ranges::lower_bound(settings.origins, rows) -
                                                settings.origins.begin());
-  if (!are_there(motion.unwrapped) || motion.origins.size() != passed) return false;
-  for (std::size_t i = 0; i < passed; ++i) {
+  const std::size_t begun = motion.origins.size();
+  const bool lacks_last = begun + 1 == passed && settings.origins[begun] + 1 == rows;
+  if (!are_there(motion.unwrapped) || (begun != passed && !lacks_last)) return false;
+  for (std::size_t i = 0; i < begun; ++i) {
     const MotionOrigin& origin = motion.origins[i];
     if (origin.tap != settings.origins[i] || !are_there(origin.centres) ||
         origin.values.size() !=

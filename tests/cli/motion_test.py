@@ -150,6 +150,19 @@ class Motion(Case):
             self.assertEqual(list(file["motion/point_0000/waiting_time"]), [0, 1, 3, 10])
             self.assertEqual(list(file["motion/point_0000/lag"]), [1, 2, 3, 4, 5, 6, 8, 10, 13])
 
+    def test_a_default_origin_at_the_last_tap_begins_when_the_run_goes_on(self):
+        def scene(taps):
+            return changed(FOLLOWED, motion={}, protocol=[{"tap": {"dilate": 0.05}, "count": taps}])
+        self.write(scene(10))
+        self.run_scene()
+        self.write(scene(12))
+        self.run_scene("--resume")
+        self.run_scene("-o", "straight.h5")
+        self.assertEqual(self.digest("tiny.h5"), self.digest("straight.h5"))
+        with h5py.File(self.folder / "tiny.h5") as file:
+            self.assertEqual(list(file["motion/point_0000/waiting_time"]), [0, 1, 3, 10])
+            self.assertFalse(np.isnan(file["motion/point_0000/overlap"][3, :2]).any())
+
     def test_grains_are_followed(self):
         self.write(changed(FOLLOWED, realizations=1, spheres=20,
                            container={"sides": "cylinder", "diameter": 3},

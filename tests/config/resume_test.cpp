@@ -58,10 +58,10 @@ TEST_CASE("A resume follows the same motion, from further origins and over furth
   CHECK(faults("{}", "{}", 0).empty());
   CHECK(faults("{}", "{}", 3000).empty());
   CHECK(faults(R"({"origins": [0, 9]})",
-               R"({"origins": [0, 9, 131], "lags": {"log": {"to": 140, "per_decade": 10}}})", 20)
+               R"({"origins": [0, 9, 130, 131], "lags": {"log": {"to": 140, "per_decade": 10}}})", 20)
             .empty());
   CHECK(faults(R"({"origins": [0, 9]})", R"({"origins": [0, 8, 9]})", 0) ==
-        "/motion: a motion origin at tap 8 was added: only those after the last tap, 130, can be "
+        "/motion: a motion origin at tap 8 was added: only those from the last tap, 130, on can be "
         "(at the sweep point dilate = 0.01)\n");
   CHECK(faults("{}", R"({"lags": [1, 2]})", 0) ==
         "/motion: the motion lag of 3 was removed (at the sweep point dilate = 0.01)\n");

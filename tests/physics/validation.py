@@ -13,7 +13,8 @@ from page_text import table
 from paper_runs import table_of
 from published import FIGURES, NO_DATA
 from reduce import REDUCED, read_table
-from scores import (DECIDED, STATUS, all_scores, counts, false_discoveries, status_of_figure)
+from scores import DECIDED, STATUS, all_scores, counts, false_discoveries, status_of_figure
+from verdicts import p_text
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LONG = 118
