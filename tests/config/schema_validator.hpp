@@ -7,7 +7,7 @@ namespace jostle {
 
 using PlainJson = nlohmann::json;  // the type that valijson reads
 
-/// Tells whether scenes satisfy the schema that the program prints, by valijson.
+/// Validates scenes against the schema that the program prints, by valijson.
 class SchemaValidator {
  public:
   SchemaValidator();

@@ -42,11 +42,11 @@ FIGURES = {
                   "A falls with age, 3 to 1000 taps, lag 100", WALLS + " Strength, ages and lags from 1 are ours. Eq. 6 "
                   "is concave: A(9) is at most 9 A(1)."),
     "pb6": Figure("PB 6: vertical profile", ("pb-campaign", "pb6-8"), f"{PB}/campaign", "4096", "4000; 1000",
-                  "3, 4 / 10", "density falls upward (alpha > 0)", WALLS + CAMPAIGN),
+                  "3 to 5 / 10", "density falls upward (alpha > 0)", WALLS + CAMPAIGN),
     "pb7": Figure("PB 7: transverse profile", ("pb-campaign", "pb6-8-periodic"), f"{PB}/campaign", "4096",
                   "4000; 1000", "3, 4 / 10", "layers at the walls: third gap", WALLS + CAMPAIGN),
     "pb8": Figure("PB 8: lateral and central increase", ("pb-campaign", "pb6-8"), f"{PB}/campaign", "4096",
-                  "4000", "3 / 10", "the central increase is below the lateral, tap 4000",
+                  "4000", "3 to 5 / 10", "the central increase is below the lateral, tap 4000",
                   WALLS + CAMPAIGN + " The four strengths are ours; \"nearly frozen\" is read as less than a fifth of "
                   "the gain at 0.1."),
     "pb9": Figure("PB 9: P0(sigma)", ("pb-voids",), f"{PB}/fig9", "4096", "4000", "4 / 1",
@@ -76,11 +76,11 @@ FIGURES = {
                   "N_c rises with Phi", LIFT),
     "dr4": Figure("DR 4: densities at five lifts", ("dr4",), f"{DR}/fig4", "1536 (3456)", "400 (10 000)", "3 / 20",
                   "that lift is near 0.25 to 0.3 (0.05)", LIFT),
-    "dr5": Figure("DR 5: from a crystal", ("dr-crystal", "dr5"), f"{DR}/crystal", "3456", "5000 (10 000)", "3 / 20",
+    "dr5": Figure("DR 5: from a crystal", ("dr-crystal", "dr5"), f"{DR}/crystal", "3456", "5000 (10 000)", "4 / 20",
                   "at about the lift of fig. 4 (0.2 to 0.35)", LIFT + " \"Within 60 taps\" is read as the fraction at "
                   "tap 0 less that at 56, the last kept tap before 60; the final Phi as the mean of taps 4001 to 5000; "
                   "\"flattens\" as less than half the rise per e-fold of taps after 2370 than from 100 to 940, lifts 0.2 "
-                  "and 0.25. These contrasts were stated when one bed of each of three lifts was known. Three beds leave the "
+                  "and 0.25. These contrasts were stated when one bed of each of three lifts was known. Four beds leave the "
                   "place of the maximum open; four smaller beds, as they were tested before, decide it."),
     "dr6": Figure("DR 6: n(y/d) and densities", ("dr6-windows", "dr6", "dr6-published", "dr6-readings"),
                   f"{DR}/reduced/fig6-windows", "3456", "250; 600 (90 000)", "20, 4 / 20",

@@ -18,17 +18,17 @@ PRINTED = ((0, 0.567), (50, 0.578), (250, 0.597))
 
 
 def draw_profile(panel, quantity, mark_fits):
-    """A profile of the poured bed and after 4000 taps, eps = 0.1, with eq. 7 of each where asked for."""
+    """A profile, over radii, of the poured bed and after 4000 taps, eps = 0.1, with eq. 7 of each where asked for."""
     point = point_at(DRAWN)
     found = distribution(CAMPAIGN, point, quantity)
     for tap, colour, style in ((0, COLOURS[1], ":"), (LAST, COLOURS[0], "-")):
         x, mean, _ = found[tap]
-        panel.plot(x, mean, style, color=colour, label=f"tap {tap}")
+        panel.plot(2 * x, mean, style, color=colour, label=f"tap {tap}")
         if mark_fits:
             phi_0, alpha, beta, z_star = (numbers(CAMPAIGN, point, f"profile/eq7_{name}", tap).mean()
                                           for name in ("phi_0", "alpha", "beta", "z_star"))
-            z = 2 * x[x > 2.5]  # radii
-            panel.plot(z / 2, (phi_0 - alpha * z) / (1 + np.exp(beta * (z - z_star))), "k", linewidth=.7,
+            z = 2 * x[x > 2.5]
+            panel.plot(z, (phi_0 - alpha * z) / (1 + np.exp(beta * (z - z_star))), "k", linewidth=.7,
                        label="eq. 7" if tap else None)
     panel.set(ylabel="packing fraction")
 
@@ -36,16 +36,16 @@ def draw_profile(panel, quantity, mark_fits):
 def draw_vertical(axes):
     """[PB] 6: packing fraction against height."""
     draw_profile(axes[0], "profile/phi", True)
-    axes[0].set(xlabel="height, diameters", xlim=(0, 18))
+    axes[0].set(xlabel="z/R", xlim=(0, 36))
     axes[0].legend()
 
 
 def draw_transverse(axes):
     """[PB] 7: packing fraction across the box, lines at 7 R from the walls."""
     draw_profile(axes[0], "sides/phi_xy", False)
-    for place in (3.5, WIDTH - 3.5):
+    for place in (7, 2 * WIDTH - 7):
         axes[0].axvline(place, color="k", linestyle=":", linewidth=.8)
-    axes[0].set(xlabel="x, diameters (7 R from the walls: dotted)", xlim=(0, WIDTH))
+    axes[0].set(xlabel="x/R", xlim=(0, 2 * WIDTH))
     axes[0].legend(loc="lower center")
 
 
@@ -55,8 +55,9 @@ def draw_increases(axes):
     for panel, side in zip(axes, ("lateral", "central")):
         for k, strength in enumerate(STRENGTHS):
             beds = [Estimate.of(numbers_at(strength, f"sides/{side}_change", tap)) for tap in taps]
-            panel.errorbar(taps, [bed.value for bed in beds], [bed.half_width() for bed in beds], marker=MARKS[k],
-                           color=COLOURS[k], markersize=3, capsize=1, elinewidth=.6,
+            errors = [bed.half_width() for bed in beds] if beds[0].dof > 0 else None
+            panel.errorbar(taps, [bed.value for bed in beds], errors, marker=MARKS[k], color=COLOURS[k], markersize=3,
+                           capsize=1, elinewidth=.6,
                            label=f"eps^(1/2) = {strength**0.5:.3g}")
         panel.set_xscale("symlog", linthresh=1)
         panel.set(xlabel="taps", ylabel="increase of Phi", title=side, ylim=(0, 0.13))
