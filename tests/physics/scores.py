@@ -11,7 +11,7 @@ import contrasts
 import contrasts_of_beds
 import contrasts_of_campaign
 from reduce import REDUCED, read_table
-from verdicts import LEVEL, Estimate, detectable, p_beyond, p_two_sided, p_within
+from verdicts import LEVEL, Estimate, detectable, p_beyond, p_two_sided, p_within, share_above
 
 REPRODUCED, COMPATIBLE, QUALITATIVE = "reproduced", "compatible", "qualitatively"
 NOT, UNDERPOWERED, SILENT = "not reproduced", "underpowered", "not in the paper"
@@ -108,7 +108,7 @@ def positive(claim, estimates):
         p_two_sided(estimate) for estimate in estimates if estimate.value <= 0))
     name = "t-test" + "s of all" * (len(estimates) > 1)
     if not p < LEVEL and np.isfinite(claim.relevant):
-        less = min(1.0, len(estimates) * min(float(stats.t.sf((claim.relevant - e.value) / e.error, e.dof))
+        less = min(1.0, len(estimates) * min(share_above((claim.relevant - e.value) / e.error, e.dof)
                                              for e in estimates))
         return NOT if less < LEVEL else UNDERPOWERED, less, f"above 0, or below {claim.relevant:g}"
     return UNDERPOWERED if not p < LEVEL else REPRODUCED if favours else NOT, p, name
