@@ -3,6 +3,7 @@
 
 reduce.py sections PAGE FOLDER: the tables of a page of figures.py, one folder per run. beds.py reduces results files."""
 import csv
+import functools
 import json
 import pathlib
 import re
@@ -23,9 +24,16 @@ def write_table(path, header, rows):
         csv.writer(file, lineterminator="\n").writerows([header, *rows])
 
 
-def read_table(path):
+@functools.lru_cache(maxsize=64)
+def rows_of(path, modified, size):
     with path.open(newline="") as file:
         return list(csv.reader(file))
+
+
+def read_table(path):
+    """The rows of a CSV file, read again only where it has changed."""
+    found = path.stat()
+    return list(rows_of(path, found.st_mtime_ns, found.st_size))
 
 
 def reduce_sections(page, folder):
