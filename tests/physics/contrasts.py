@@ -105,12 +105,6 @@ def weak_is_frozen():
     return [contrast([last[0], first[0], last[2], first[2]], [-1, 1, 0.2, -0.2], 3, True)]
 
 
-def nu_steps():
-    """Falls of nu from each kept tap to the next, where Phi_c rises each time."""
-    points = column("pb10", 1, "nu", 2)
-    return [contrast(points, [float(i == k) - float(i == k + 1) for i in range(5)], 2, True) for k in range(4)]
-
-
 def lifts():
     return column("dr4", 1, "400", 2)
 

@@ -314,6 +314,13 @@ def rise_per_e_fold(point, first, last):
     return (after - before) / (t1 - t0)
 
 
+def strong_lifts_drift():
+    """The mean of taps 4001 to 5000 less that of kept taps 75 to 133, lifts 0.4 and 0.5."""
+    return [Estimate.of(steady(CRYSTAL, point, "floor_15") -
+                        np.mean([series(CRYSTAL, point, "floor_15", tap) for tap in MELTED], axis=0))
+            for point in map(from_crystal, (0.4, 0.5))]
+
+
 def flattening():
     """Half the rise per e-fold of taps from about 100 to 940 less that from about 2370 to 4500, beds of lifts 0.2 and
     0.25."""

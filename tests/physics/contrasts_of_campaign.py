@@ -15,10 +15,15 @@ def point_at(strength):
     return point_of(CAMPAIGN, f"dilate = {strength}")
 
 
+def by_realization(strength, values):
+    """{realization: value}; values(strength): [bed]."""
+    return dict(zip(realizations(CAMPAIGN, point_at(strength)), values(strength)))
+
+
 def in_pairs(first, second, values):
-    """Differences between two strengths, of the realizations that both have; values(strength): [bed]."""
-    beds = [dict(zip(realizations(CAMPAIGN, point_at(strength)), values(strength))) for strength in (first, second)]
-    return np.array([beds[0][bed] - beds[1][bed] for bed in beds[0] if bed in beds[1]])
+    """Differences between two strengths, of the realizations that both have."""
+    beds, others = by_realization(first, values), by_realization(second, values)
+    return np.array([beds[bed] - others[bed] for bed in beds if bed in others])
 
 
 def log_power(strength, band):
@@ -66,12 +71,10 @@ def numbers_at(strength, quantity, tap=LAST):
 
 
 def over_strengths(values):
-    """The mean over the strengths, variances pooled; values(strength): [bed]."""
-    beds = [values(strength) for strength in STRENGTHS]
-    squares = [np.sum((bed - bed.mean())**2) for bed in beds]
-    dof = sum(len(bed) - 1 for bed in beds)
-    variance = sum(squares) / dof * sum(1 / len(bed) for bed in beds) / len(beds)**2
-    return Estimate(float(np.mean([bed.mean() for bed in beds])), float(variance**0.5), dof)
+    """The mean over the strengths within each bed that all have: one bed starts the realization at every strength."""
+    beds = [by_realization(strength, values) for strength in STRENGTHS]
+    return Estimate.of([np.mean([of_strength[bed] for of_strength in beds])
+                        for bed in set.intersection(*map(set, beds))])
 
 
 def of_profile(quantity, peaks, trough):
@@ -108,13 +111,23 @@ def full_third_gap():
     return layers_at_walls((2.35, 3.25), 2.75)
 
 
+def alpha_at(strength):
+    """10^3 alpha R, [bed]."""
+    return 1e3 * numbers_at(strength, "profile/alpha")
+
+
 def full_alpha():
-    return [Estimate.of(numbers_at(DRAWN, "profile/alpha"))]
+    return [Estimate.of(alpha_at(DRAWN))]
 
 
 def full_alpha_rises():
     """eps^(1/2) = 0.1 less 0.025, beds in pairs."""
-    return [Estimate.of(in_pairs(0.01, 0.000625, lambda strength: numbers_at(strength, "profile/alpha")))]
+    return [Estimate.of(in_pairs(0.01, 0.000625, alpha_at))]
+
+
+def full_alpha_falls():
+    """eps^(1/2) = 0.1 less 0.32, beds in pairs."""
+    return [Estimate.of(in_pairs(0.01, 0.1, alpha_at))]
 
 
 def lateral_above_central(tap):

@@ -130,7 +130,7 @@ def draw_strongest(target):
         for panel, title in zip(axes, (
                 "PB 4: a bell, and denser beds on the way down", "PB 7: three layers at the walls",
                 "PB 10: the tail of large pores shrinks", "DR 6: compatible with 0.567, 0.578, 0.597",
-                "DR 7: poured beds are looser with friction", "DR 4, 5: densest at a lift of 0.25 to 0.3")):
+                "DR 7: poured beds are looser with friction", "DR 4, 5: densest at an intermediate lift")):
             panel.set_title(title)
         save(figure, target)
 
