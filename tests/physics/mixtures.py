@@ -69,7 +69,7 @@ def rise():
         rows.append((number(labels[point], "diameter"), number(labels[point], "eta"), gained))
     rows.sort(key=lambda row: (-row[1], row[0]))
     ps = holm([mean_of(gained[:, last])[2] for *_, gained in rows])
-    print("| ratio | eta | tap 10 | tap 50 | tap 100 | p | beds risen by 0.5 d |\n|---|---|---|---|---|---|---|")
+    print("| size ratio | eta | tap 10 | tap 50 | tap 100 | p | beds risen by 0.5 d |\n|---|---|---|---|---|---|---|")
     for (ratio, eta, gained), p in zip(rows, ps):
         at = [text_of(gained[:, taps.index(tap)]) for tap in (10, 50, 100)]
         print(f"| {ratio:g} | {eta:g} | " + " | ".join(at) +
