@@ -88,8 +88,11 @@ constexpr auto relax_field = irregular(
       if (!scene.grains) json["relax"] = written_part(scene.relax);
     },
     [](ObjectSchema& schema, Definitions& definitions) {
-      schema.properties["relax"] = described_as(value_schema(relaxation_form, definitions),
-                                                "Relaxation after a tap", "", Json::object(), "");
+      schema.properties["relax"] =
+          described_as(value_schema(relaxation_form, definitions), "Relaxation after a tap",
+                       "Monte Carlo: the moves after a tap, and the rule "
+                       "that ends them.",
+                       Json::object(), "");
     });
 
 constexpr auto relax_start_field = irregular(

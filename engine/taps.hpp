@@ -41,7 +41,9 @@ struct DilateFloorHeld {
 
   static constexpr Description description{
       .name = "dilate_floor_held",
-      .text = "Delta: (z - 1/2) -> (z - 1/2)(1 + Delta); spheres on the floor keep their height",
+      .text =
+          "Delta: (z - r) -> (z - r)(1 + Delta), r being the smallest radius (1/2 for equal "
+          "spheres); spheres of this radius on the floor keep their height",
       .symbol = "Δ"};
   template <class Self = DilateFloorHeld>
   static constexpr auto fields() {
@@ -77,11 +79,12 @@ struct Shake {
   template <class Self = Shake>
   static constexpr auto fields() {
     return std::tuple{
-        field("lambda", &Self::lambda, dilation_strength),
+        field("lambda", &Self::lambda, dilation_strength, "Relative dilation before the offsets"),
         field("lateral_radius", &Self::lateral_radius, Number{closed_range(0, 1), "diameters"},
               "Radius of the disc of the lateral offsets"),
         field("retries", &Self::retries, Whole{0, 1000},
-              "How often an offset that would overlap is drawn again before it is dropped")};
+              "Number of times that an offset that would overlap is drawn again before it is "
+              "dropped")};
   }
 };
 

@@ -31,7 +31,7 @@ struct SpreadTarget {
         field("observable", &Self::observable, Text{}, "One that the scene observes",
               {.required = "the name of an observable of this scene"}),
         field("taps", &Self::taps, TapNumbers{},
-              "Where the spread must be small; none: at the last tap"),
+              "Taps at which the target must be met; absent: the last tap"),
         keyed_number<SpreadTarget, Spread, 2>(
             &Self::at_most, &Self::spread, spread_names, {spread_number, spread_number},
             {"Standard error of the mean over realizations, at most",

@@ -152,8 +152,7 @@ struct GapsSettings {
               "have weight; "
               "4 in a fully periodic box, which has none"),
         field("window", &Self::window, Bounds{left_open_range(0, 1e6), closed_range(0, 1e6)},
-              "Gaps whose exponent is sought, diameters; low below high, and above 0, which has no "
-              "logarithm")};
+              "Smallest and largest gap for the exponent, diameters, both above 0")};
   }
 };
 
@@ -182,7 +181,7 @@ struct ClustersSettings {
   bool operator==(const ClustersSettings&) const = default;
 
   static constexpr Description description{
-      "clusters", "Volumes of clusters of Voronoi cells against their number"};
+      "clusters", "Volumes of clusters of Voronoi cells against the number of their cells"};
   template <class Self = ClustersSettings>
   static constexpr auto fields() {
     return std::tuple{

@@ -78,8 +78,10 @@ struct BulkFraction {
                  "of them"}),
         alternative(&Self::window),
         field("taper", &Self::taper, Number{closed_range(0, 10)},
-              "Over what height the window's edges rise and fall, diameters; 0: sharp. A layer "
-              "spacing, 0.8165, takes every layer of a close-packed bed wholly or not at all",
+              "Height over which each edge of the window is spread, diameters; 0: sharp edges. "
+              "With a "
+              "layer spacing, 0.8165, the value of a close-packed bed does not depend on the place "
+              "of the edges",
               {.unless_default = true})};
   }
 };

@@ -31,10 +31,11 @@ Json tap_list_schema(Definitions& definitions) {
   return schema;
 }
 
-constexpr std::tuple grid_fields{field("from", &LogarithmicTaps::first, Whole{1, most_taps}),
-                                 field("to", &LogarithmicTaps::last, Whole{1, most_taps}, "",
-                                       {.required = "the tap at which the grid ends"}),
-                                 field("per_decade", &LogarithmicTaps::per_decade, Whole{1, 100})};
+constexpr std::tuple grid_fields{
+    field("from", &LogarithmicTaps::first, Whole{1, most_taps}, "First tap of the grid"),
+    field("to", &LogarithmicTaps::last, Whole{1, most_taps}, "Last tap that the grid may have",
+          {.required = "the tap at which the grid ends"}),
+    field("per_decade", &LogarithmicTaps::per_decade, Whole{1, 100}, "Taps per decade")};
 
 bool read_grid(const Reader& value, LogarithmicTaps& grid) {
   if (!value.is_object_of({"log", "also"})) return false;
@@ -111,11 +112,12 @@ void describe_keep(ObjectSchema& schema, Definitions&) {
                    {"items", words_schema(kept_names())}};
   schema.properties["keep"] = described_as(
       names, "Kept data of a snapshot",
-      "Velocities (and spins, with friction), contacts with their forces, granular_temperature by "
-      "height, and forces (of floor and sides, and the force-moment tensor of the bed) require "
-      "discrete elements, which keep all of them by default; Monte Carlo keeps the first three. "
-      "Velocities and contacts require positions. driven_temperature, on request, is the "
-      "granular temperature while the floor moves, of half_sine and vibration.",
+      "Default of Monte Carlo: positions, coordination and height_histogram. Discrete elements "
+      "also "
+      "keep velocities (and spins, with friction), contacts with their forces, "
+      "granular_temperature by height, and forces (of floor and sides, and the force-moment tensor "
+      "of the bed). Velocities and contacts require positions. driven_temperature, on request, is "
+      "the granular temperature while a half_sine or a vibration moves the floor.",
       by_default.at("keep"), "");
 }
 

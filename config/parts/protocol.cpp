@@ -19,10 +19,13 @@ constexpr auto ramp_fields(Range range, RampScale scale) {
   constexpr std::string_view plain = "a ramp has the keys from, to, step",
                              roots = "a ramp has the keys sqrt_from, sqrt_to, sqrt_step";
   const Notes notes{.required = rooted ? roots : plain};
-  return std::tuple{field(rooted ? "sqrt_from" : "from", &Ramp::start, Number{range}, "", notes),
-                    field(rooted ? "sqrt_to" : "to", &Ramp::end, Number{range}, "", notes),
-                    field(rooted ? "sqrt_step" : "step", &Ramp::step,
-                          Number{left_open_range(0, range.high)}, "", notes)};
+  return std::tuple{
+      field(rooted ? "sqrt_from" : "from", &Ramp::start, Number{range},
+            rooted ? "Square root of the first strength" : "First strength", notes),
+      field(rooted ? "sqrt_to" : "to", &Ramp::end, Number{range},
+            rooted ? "Square root of the last strength" : "Last strength", notes),
+      field(rooted ? "sqrt_step" : "step", &Ramp::step, Number{left_open_range(0, range.high)},
+            rooted ? "Step of the square root" : "Step of the strength", notes)};
 }
 
 bool read_ramp(const Strength& form, const Reader& reader, Ramp& ramp) {
@@ -230,7 +233,7 @@ Json part_schema(std::type_identity<ProtocolLine>, Definitions& definitions) {
   schema.properties["ramp"] = described_as(
       ramped_taps_schema(definitions), "Ramp",
       "A tap whose strength goes from one value to another in equal steps, both ends included; "
-      "downwards where from is above to. sqrt_*: steps of the square root of the strength.",
+      "downwards if from exceeds to. sqrt_*: steps of the square root of the strength.",
       std::nullopt, "");
   describe_field(std::get<0>(count_field), schema, definitions);
   return described_as(schema.json(), "Stage",

@@ -77,16 +77,18 @@ Json value_schema(const PackingPath& form, Definitions&) {
 
 constexpr auto path_of(std::string_view endings) {
   return std::tuple{
-      field("path", &PackingFile::path, PackingPath{endings}, "",
+      field("path", &PackingFile::path, PackingPath{endings}, "Path from the folder of the scene",
             {.required = "the file of a saved packing, from the folder of the scene"})};
 }
 constexpr std::uint64_t most_indices = std::numeric_limits<std::uint32_t>::max();
 constexpr auto number_or_last = or_word(Whole{0, most_sweeps}, "last");
 constexpr std::tuple of_results{
     field("point", &PackingFile::point, Whole{0, most_indices}, "Index of the sweep point"),
-    field("realization", &PackingFile::realization, Whole{0, most_indices}),
-    field("tap", &PackingFile::tap, number_or_last)};
-constexpr std::tuple of_xyz{field("frame", &PackingFile::frame, number_or_last)};
+    field("realization", &PackingFile::realization, Whole{0, most_indices},
+          "Index of the realization"),
+    field("tap", &PackingFile::tap, number_or_last, "Tap of a snapshot")};
+constexpr std::tuple of_xyz{
+    field("frame", &PackingFile::frame, number_or_last, "Index of the frame")};
 constexpr std::tuple of_both{
     field("overlap", &PackingFile::overlap, Number{closed_range(0, deepest_given_overlap)},
           "The deepest overlap that is accepted, diameters; above 0 with discrete elements only",

@@ -26,10 +26,10 @@ struct Relaxation {
     return std::tuple{
         alternative(&Self::move), inlined(&Self::stop),
         field("sampler", &Self::sampler, word(samplers),
-              "exhaustive: every trial is looked at. skipping: where few trials are accepted, "
-              "those that are certainly refused are counted and not looked at; the law of the "
-              "results is the same, the random numbers are others. Not for a finite beta, "
-              "fully_periodic, or an adaptation of not_upward",
+              "exhaustive: every trial is tested. skipping: where few trials are accepted, trials "
+              "that are certain to be rejected are counted without a test; results have the same "
+              "distribution, but other random numbers. Not for a finite beta, fully_periodic, or "
+              "an adaptation of not_upward",
               {.title = "Sampler"})};
   }
 };

@@ -51,7 +51,7 @@ struct PolarMove {
         field("max_step", &Self::max_step, Number{step_length_range, "diameters"},
               "Largest length of a step", {.ladder_symbol = "d_max"}),
         field("theta0", &Self::theta0, Number{closed_range(least_theta0, most_theta0), "radians"},
-              "Width of the law of the angle from the downward vertical",
+              "Width of the distribution of the angle from the downward vertical",
               {.ladder_symbol = "theta_0"}),
         field("law", &Self::law, word(theta_laws),
               "Density in theta on [0, pi/2]: exp(-(theta/theta0)^2), exp(-theta/theta0) or "
@@ -79,13 +79,16 @@ struct StepAdaptation {
 
   template <class Self = StepAdaptation>
   static constexpr auto fields() {
-    return std::tuple{
-        field("factor", &Self::factor, Number{open_range(0, 1)}),
-        field("every_trials", &Self::every_trials, Whole{1, most_trials}),
-        field("threshold", &Self::threshold, Number{left_open_range(0, 1)}),
-        field("of", &Self::base, word(acceptance_bases), "The trials of which the share is taken"),
-        field("reset_each_tap", &Self::reset_each_tap, Flag{},
-              "The step starts anew at max_step at each tap")};
+    return std::tuple{field("factor", &Self::factor, Number{open_range(0, 1)},
+                            "Factor by which the step is multiplied"),
+                      field("every_trials", &Self::every_trials, Whole{1, most_trials},
+                            "Trials between two tests"),
+                      field("threshold", &Self::threshold, Number{left_open_range(0, 1)},
+                            "Accepted fraction of the trials below which the step shrinks"),
+                      field("of", &Self::base, word(acceptance_bases),
+                            "The trials of which the accepted fraction is taken"),
+                      field("reset_each_tap", &Self::reset_each_tap, Flag{},
+                            "The step starts anew at max_step at each tap")};
   }
 };
 

@@ -74,13 +74,17 @@ struct BulkFractionStop {
       "et al. 2010). Can stop a bed in mid-air"};
   template <class Self = BulkFractionStop>
   static constexpr auto fields() {
-    return std::tuple{field("change", &Self::change, Number{closed_range(0, 1)}),
-                      field("every_trials", &Self::every_trials, Whole{1, most_trials},
-                            "Trials between two measurements"),
-                      field("times", &Self::times, Whole{1, 1000}),
-                      field("measure_start", &Self::measure_start, Flag{},
-                            "The state right after the tap counts as a measurement"),
-                      field("window", &Self::window, OneOf<Window>{}, "", {.title = "Window"})};
+    return std::tuple{
+        field("change", &Self::change, Number{closed_range(0, 1)},
+              "Change of the packing fraction between two measurements, at most"),
+        field("every_trials", &Self::every_trials, Whole{1, most_trials},
+              "Trials between two measurements"),
+        field("times", &Self::times, Whole{1, 1000},
+              "Successive measurements that must change so little"),
+        field("measure_start", &Self::measure_start, Flag{},
+              "The state right after the tap counts as a measurement"),
+        field("window", &Self::window, OneOf<Window>{},
+              "Heights between which the packing fraction is measured", {.title = "Window"})};
   }
 };
 

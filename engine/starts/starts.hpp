@@ -190,7 +190,8 @@ struct Grow {
       "grow", "Random points that grow to spheres; fully_periodic containers only", "Grow"};
   template <class Self = Grow>
   static constexpr auto fields() {
-    return std::tuple{field("max_sweeps", &Self::max_sweeps, Whole{1, most_growth_sweeps})};
+    return std::tuple{field("max_sweeps", &Self::max_sweeps, Whole{1, most_growth_sweeps},
+                            "Sweeps of the growth, at most")};
   }
 };
 

@@ -87,7 +87,7 @@ struct AgeingSettings {
   bool operator==(const AgeingSettings&) const = default;
 
   static constexpr Description description{
-      "ageing", "A(t, t_W), V and C with errors, fits of eq. 6, what lays ages on one curve"};
+      "ageing", "A(t, t_W), V and C with errors, fits of eq. 6, tests of a collapse of all ages"};
   template <class Self = AgeingSettings>
   static constexpr auto fields() {
     return std::tuple{
@@ -131,9 +131,9 @@ struct OrderingSettings {
               "The value from which a packing counts as ordered, in units of the observable",
               {.required = "the value of the observable at which a packing counts as ordered"}),
         field("hold", &Self::hold, Whole{1, most_taps},
-              "Taps running that it must be at or above the threshold"),
+              "Consecutive taps at which the observable must be at or above the threshold"),
         field("equilibrium", &Self::equilibrium, Text{},
-              "The observable whose last taps are compared over a sweep; absent: the same",
+              "The observable whose last taps are compared over a sweep; absent: the analysed one",
               {.unless_default = true}),
         last_taps<OrderingSettings>(1, "Taps at the end that are compared; absent: a quarter")};
   }
@@ -159,8 +159,8 @@ struct SweepSettings {
   static constexpr auto fields() {
     return std::tuple{
         field("quantity", &Self::quantity, Text{},
-              "value: the mean of the last taps; or what another analysis or a fit that the scene "
-              "asks for finds",
+              "value: the mean of the last taps; or a result of another analysis or fit that the "
+              "scene requests",
               {.examples = R"(["value", "steady/sigma", "kww/rho_inf"])"}),
         last_taps<SweepSettings>(1, "Taps at the end; absent: a quarter of all"),
         drawn_against<SweepSettings>(),
@@ -186,7 +186,8 @@ struct VolumesSettings {
                           "Taps at the end; absent: a quarter of all, or of the shortest stage"),
                       drawn_against<VolumesSettings>(),
                       field("spheres", &Self::spheres, Number{left_open_range(0, 1e9)},
-                            "Whose volume it is; absent: those of the observable's window")};
+                            "Number of spheres in the volume; absent: those of the observable's "
+                            "window")};
   }
 };
 
