@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* verdict_legend =
     "\na(b): b, in the last digits of a, is half the 68 % interval; a(+b/-c): its two sides; -: "
-    "it is open, or the 95 % interval is on both sides (not identifiable).\n"
+    "the 68 % interval is open, or the 95 % interval is open on both sides (not identifiable).\n"
     "wide: the 95 % interval is longer than an eighth of the curve's range (a level or a place), "
     "has ends that differ by more than a factor 2 (another positive parameter, or the factor of a "
     "power of t), or contains 0 (a slope or a factor); identified: the interval has two ends and "

@@ -53,7 +53,7 @@ std::string text_of(const NoTapsYet& error) {
 
 std::string text_of(const OutputExists& error) {
   return fmt::format(
-      "{}. Go on with it with --resume, write elsewhere with -o FILE, or replace it "
+      "{}. Continue it with --resume, write elsewhere with -o FILE, or replace it "
       "with --force.",
       error.what());
 }

@@ -108,7 +108,7 @@ class Run(Case):
         self.run_scene(SHORT)
         for ask, code, pattern in (
                 (lambda: jostle.run(SHORT), 2,
-                 "tiny.h5 exists and is kept. Go on with it with resume=True, write elsewhere with output=FILE, or "
+                 "tiny.h5 exists and is kept. Continue it with resume=True, write elsewhere with output=FILE, or "
                  "replace it with force=True"),
                 (lambda: jostle.run(changed(SHORT, seed=5), resume=True), 2, "another file with output=FILE"),
                 (lambda: jostle.run("none.json"), 2, "cannot read the scene: none.json"),

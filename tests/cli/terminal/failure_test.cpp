@@ -19,7 +19,7 @@ TEST_CASE("Errors of the library name options") {
                                  Argument::sweep_point)) ==
         "--observable Z: it is at sweep point 1: choose one with --sweep-point");
   CHECK(failure_text(OutputExists("out.h5")) ==
-        "out.h5 exists and is kept. Go on with it with --resume, write elsewhere with -o FILE, or "
+        "out.h5 exists and is kept. Continue it with --resume, write elsewhere with -o FILE, or "
         "replace it with --force.");
   CHECK(failure_text(OtherShard("out.h5", {1, 2}, {2, 2})) ==
         "out.h5 holds shard 1/2, not 2/2: resume it with --shard 1/2");
