@@ -262,7 +262,8 @@ void add_ordering(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
       });
   kinds.add_option(kind, "--threshold", a.threshold,
                    "The value of the observable from which a packing counts as ordered");
-  kinds.add_option(kind, "--hold", a.hold, "Taps running that it must be there (default: 10)",
+  kinds.add_option(kind, "--hold", a.hold,
+                   "Consecutive taps at or above the threshold (default: 10)",
                    [](Option option) { option.limit(1, 1000000000); });
   kinds.add_option(kind, "--equilibrium", a.equilibrium,
                    "The observable whose last taps are compared (default: the same)");
@@ -306,13 +307,13 @@ void add_volumes(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
 }
 
 void add_memory(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
-  Command kind = kinds.add("memory", "Dependence of the future of a common value on its history",
-                           [&code](AnalyseArguments& arguments) {
-                             Analyses analyses;
-                             analyses.memory = requests(
-                                 arguments, MemorySettings{ascending("--lags", arguments.lags)});
-                             code = run_analyses(arguments, analyses);
-                           });
+  Command kind = kinds.add(
+      "memory", "Dependence of the evolution after a common value on the history",
+      [&code](AnalyseArguments& arguments) {
+        Analyses analyses;
+        analyses.memory = requests(arguments, MemorySettings{ascending("--lags", arguments.lags)});
+        code = run_analyses(arguments, analyses);
+      });
   kinds.add_option(kind, "--lags", a.lags,
                    "Last taps of windows after the switch, separated by commas (default: 1, 3, "
                    "10, 30, ...)",
@@ -359,8 +360,9 @@ void add_analyse(Command& app, int& code) {
       "  jostle analyse lifts.h5 ordering --observable grown_layers --threshold 5\n"
       "  jostle analyse bell.h5 sweep --observable bulk_fraction --last 1000\n"
       "\n"
-      "Tables are kept in the file they come from, under /analysis; what they mean:\n"
-      "docs/reference/analyses.md. Exit code 2 where no analysis was possible.");
+      "The options of an analysis: jostle analyse FILE steady --help. Tables are kept in the file\n"
+      "they come from, under /analysis; docs/reference/analyses.md explains them. Exit code 2\n"
+      "means that no analysis was possible.");
 }
 
 }  // namespace jostle::inline cli

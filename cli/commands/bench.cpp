@@ -88,9 +88,7 @@ void run_bench(const BenchArguments& arguments) {
 void add_bench(Command& app, int& code) {
   Command command = app.add_command("bench", "Measure the rate of trials on this machine");
   auto arguments = std::make_shared<BenchArguments>();
-  command
-      .add_option("states", arguments->states,
-                  "States to measure (default: all that the run lists)")
+  command.add_option("states", arguments->states, "States to measure (default: all)")
       .one_of(state_names());
   command.add_flag("--json", arguments->json, "Print JSON instead of one line per state");
   command.footer(

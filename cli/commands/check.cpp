@@ -153,7 +153,7 @@ void add_options(Command& command, CheckArguments& arguments) {
       .required()
       .offers_files({"json"});
   command.add_threads(arguments.threads,
-                      "Estimate for so many (default: the CPUs this process may use)");
+                      "Threads of the estimate (default: the CPUs this process may use)");
   command.add_flag("--no-pilot", arguments.no_pilot,
                    "Leave out the short trial that time and memory are estimated from");
 }
@@ -169,7 +169,8 @@ void add_check(Command& app, int& code) {
       "  jostle check scene.json              up to about ten seconds; grains, a minute\n"
       "  jostle check scene.json --no-pilot   at once, without time and memory\n"
       "\n"
-      "A bad scene: every fault on stderr, as its JSON pointer and what to do; exit code 2.");
+      "Every fault of a bad scene is printed on stderr, with its JSON pointer and what to do; the\n"
+      "exit code is then 2.");
   command.run([arguments, &code] {
     check(*arguments);
     code = exit_ok;

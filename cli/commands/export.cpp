@@ -154,7 +154,7 @@ void add_export(Command& app, int& code) {
   command.add_option("--sweep-point", a.point,
                      "Sweep point: its number, VALUE or NAME=VALUE (default: the first)");
   const Option realization =
-      command.add_option("--realization", a.realization, "Its number (default: 0)");
+      command.add_option("--realization", a.realization, "Realization, by its number (default: 0)");
   command
       .add_option("--tap", a.taps,
                   "Taps with a snapshot (frames of extended XYZ, from 0), separated by "
@@ -166,7 +166,7 @@ void add_export(Command& app, int& code) {
   command.footer(
       "Examples:\n"
       "  jostle export quickstart.h5 --format extxyz            into quickstart.xyz\n"
-      "  jostle export quickstart.h5 --format lammps --tap all  a frame a snapshot\n"
+      "  jostle export quickstart.h5 --format lammps --tap all  one frame per snapshot\n"
       "  jostle export quickstart.h5 --format vtp --tap 0,100   two .vtp, and a .pvd\n"
       "  jostle export packing.xyz --format vtp -o packing.vtp\n"
       "  jostle export quickstart.h5 --format h5md --tap all    for MDAnalysis\n"
@@ -175,7 +175,7 @@ void add_export(Command& app, int& code) {
       "Every sphere with its radius, coordination (centres within 1.05 times the sum of the\n"
       "two radii) and the volume of its Voronoi cell, radical in a mixture. Equal spheres\n"
       "also have q6 and crystal structure, spheres of a mixture their kind and mass. A scene\n"
-      "can start from the extended XYZ: the same bits.");
+      "can start from the extended XYZ, which keeps every bit.");
   command.run([arguments, realization, &code] {
     arguments->realization_given = realization.count() > 0;
     code =

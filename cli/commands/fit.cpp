@@ -272,8 +272,9 @@ void add_fit(Command& app, int& code) {
   auto arguments = std::make_shared<FitArguments>();
   FitArguments& a = *arguments;
   command
-      .add_option("input", a.input,
-                  "Results, or a text file with columns t, X and maybe sigma (or --realizations)")
+      .add_option(
+          "input", a.input,
+          "Results, or a text file with columns t, X and optionally sigma (or --realizations)")
       .required()
       .file_name()
       .offers_files({"h5", "csv", "txt"});
@@ -283,8 +284,8 @@ void add_fit(Command& app, int& code) {
   command
       .add_option(
           "--model", a.models,
-          "Laws of docs/reference/laws.md, NAME,..., or all: every law of relaxation (default); "
-          "with --law also that")
+          "Laws to fit, NAME,... (docs/reference/laws.md), or all: inverse_log, two_exponentials "
+          "and kww (default without --law)")
       .separated_by(',')
       .offers(model_names());
   add_law_options(command, a);
@@ -330,12 +331,11 @@ void add_fit(Command& app, int& code) {
       "  jostle fit bell.h5 --observable bulk_fraction --model kww,inverse_log\n"
       "  jostle fit measured.csv --model kww --fix rho_0=0.567 --csv fitted.csv\n"
       "  jostle fit measured.csv --law \"X0 + a*log(1 + t/b)\" --start X0=1,a=0.1,b=9\n"
-      "  jostle fit experiments.csv --realizations       a column an experiment, gaps allowed\n"
+      "  jostle fit experiments.csv --realizations       one column per experiment\n"
       "  jostle fit measured.csv --model kww --independent --page measured.html\n"
       "\n"
-      "Fits of results are kept in their file, under /fits; what a report means: "
-      "docs/reference/laws.md.\n"
-      "Exit code 2 where no law could be fitted.");
+      "Fits of results are kept in their file, under /fits. docs/reference/laws.md explains the\n"
+      "report. Exit code 2 means that no law could be fitted.");
   command.run([=, &code] {
     if (arguments->resample != "bootstrap" && (count.count() > 0 || seed.count() > 0))
       throw BadInput("--resamples and --seed apply only to --resample bootstrap: add it");

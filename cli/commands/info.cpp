@@ -211,7 +211,7 @@ void add_info(Command& app, int& code) {
   command.add_option("file", arguments->file, "The results").required().offers_files({"h5"});
   const Option digest =
       command.add_flag("--digest", arguments->digest,
-                       "Print the SHA-256 of the data alone, the same for equal runs");
+                       "Print the SHA-256 of the data alone: equal for equal results");
   command.add_flag("--json", arguments->json, "Print the summary as JSON").excludes(digest);
   Option reseal = command.add_flag(
       "--reseal", arguments->reseal,
@@ -223,7 +223,7 @@ void add_info(Command& app, int& code) {
   command.footer(
       "Examples:\n"
       "  jostle info quickstart.h5            what was run, how far it is, its curves\n"
-      "  jostle info quickstart.h5 --digest   the same for runs of the same numbers\n"
+      "  jostle info quickstart.h5 --digest   equal for equal results\n"
       "  jostle info quickstart.h5 --reseal   after h5py or HDFView had it open for writing");
   command.run([arguments, &code] {
     info(*arguments);

@@ -122,8 +122,8 @@ void add_new(Command& app, int& code) {
       "  jostle new my-bed                                     writes my-bed.json\n"
       "  jostle new bell --from philippe-bideau-2001/fig4-bell\n"
       "\n"
-      "The scene names its results NAME.h5, and the schema that is written beside it, by which\n"
-      "editors complete and check its keys.");
+      "The results of the scene go to NAME.h5. scene.schema.json is written beside it: editors\n"
+      "complete and check keys by it.");
   command.run([arguments, &code] { code = write_new_scene(*arguments); });
 }
 

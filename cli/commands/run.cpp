@@ -254,7 +254,7 @@ void add_options(Command& command, RunArguments& arguments) {
       .offers_files({"json"});
   command
       .add_option("-o,--output", arguments.output,
-                  "The results (default: the scene's name + .h5, here)")
+                  "The results (default: the scene's name + .h5, in the current folder)")
       .file_to_write()
       .offers_files({"h5"});
   command.add_threads(arguments.threads);

@@ -58,20 +58,21 @@ int selftest(const std::string& folder) {
 }  // namespace
 
 void add_selftest(Command& app, int& code) {
-  Command command =
-      app.add_command("selftest", "Check in seconds that this machine computes and stores right");
+  Command command = app.add_command(
+      "selftest", "Check in seconds that this machine computes and stores correctly");
   auto folder = std::make_shared<std::string>();
   command.add_option("--folder", *folder,
-                     "Write the trial files here, on the disk that results will go to (default: "
+                     "Folder of the test files, on the disk that results will go to (default: "
                      "the folder for temporary files)");
   command.footer(
       "Examples:\n"
       "  jostle selftest\n"
       "  jostle selftest --folder /scratch/me   also tries that disk\n"
       "\n"
-      "One line a check, \"ok\" or \"FAILED\" with what, why and what to do; exit code 4 if any\n"
-      "failed. Trials of every instruction set that this machine has against a plain loop; no\n"
-      "overlaps, by all pairs; a certified fit; one thread against two; a results file read back.");
+      "Prints one line per check, \"ok\" or \"FAILED\" with what, why and what to do; exit code 4\n"
+      "if any failed. The checks compare trials of every instruction set of this machine with a\n"
+      "plain loop, search all pairs for overlaps, fit a curve of known parameters, compare one\n"
+      "thread with two, and read a results file back.");
   command.run([folder, &code] { code = selftest(*folder); });
 }
 

@@ -70,8 +70,8 @@ int show_status(const StatusArguments& arguments) {
 }  // namespace
 
 void add_status(Command& app, int& code) {
-  Command command =
-      app.add_command("status", "Show how far the shards of a run are, and redo what is missing");
+  Command command = app.add_command(
+      "status", "Show the progress of shards and the command that runs the missing ones");
   auto arguments = std::make_shared<StatusArguments>();
   command.add_option("files", arguments->files, "A folder of shards, or their files")
       .required()

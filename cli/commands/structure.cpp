@@ -159,8 +159,8 @@ void add_structure(Command& app, int& code) {
       "  jostle structure a.xyz b.xyz c.xyz --json      three packings, their mean\n"
       "  jostle structure fig9.h5 --settings '{\"pores\": {\"bin_width\": 0.01}}'\n"
       "\n"
-      "Tables are kept in the results file, under /structure; what they mean:\n"
-      "docs/reference/structure.md. Exit code 2 where nothing could be measured.");
+      "Tables are kept in the results file, under /structure; docs/reference/structure.md\n"
+      "explains them. Exit code 2 means that nothing could be measured.");
   command.run([arguments, &code] { code = measure_structure(*arguments); });
 }
 
