@@ -166,7 +166,11 @@ bool all_identified(const Fit& fit) {
 
 /// "X_inf, tau identified; B wide".
 std::string listed_verdicts(const Fit& fit) {
-  if (all_identified(fit)) return "all parameters identified";
+  if (fit.n_free == 0) return "all parameters fixed";
+  if (all_identified(fit)) {
+    return fit.n_free == fit.estimates.size() ? "all parameters identified"
+                                              : "all free parameters identified";
+  }
   std::map<Identifiability, std::string> names;
   for (const Estimate& estimate : fit.estimates) {
     std::string& listed = names[estimate.identifiability];
@@ -217,17 +221,17 @@ std::string difference_text(const HeldOutLaw& law) {
   return value_with_error(law.difference, half_width(law.error, law.dof), 1);
 }
 
-std::string estimate_text(const Estimate& estimate) {
+std::string estimate_text(const Estimate& estimate, const std::string& unit) {
   if (estimate.identifiability == Identifiability::fixed) {
-    return number(estimate.value, 6) + " fixed";
+    return number(estimate.value, 6) + unit + " fixed";
   }
   if (!estimate.has_value()) return "-";
-  if (!estimate.intervals[0].closed()) return number(estimate.value, 4) + ", error unknown";
+  if (!estimate.intervals[0].closed()) return number(estimate.value, 4) + unit + ", error unknown";
   const double half = estimate.half_width();
   const Interval &middle = estimate.intervals[0], &wide = estimate.intervals[1];
   if (is_lopsided(estimate.value, middle.lower, middle.upper, wide.lower, wide.upper))
-    return value_with_limits(estimate.value, middle.lower, middle.upper);
-  return value_with_error(estimate.value, half);
+    return value_with_limits(estimate.value, middle.lower, middle.upper) + unit;
+  return value_with_error(estimate.value, half) + unit;
 }
 
 std::string interval_text(const Estimate& estimate, std::size_t level) {

@@ -33,7 +33,7 @@ struct ParameterTable {
 std::vector<ParameterTable> parameter_tables(const Fit& fit);
 
 /// "0.5735(17)", value and half of the 68 % interval; "-" where that is open; "0.5 fixed".
-std::string estimate_text(const Estimate& estimate);
+std::string estimate_text(const Estimate& estimate, const std::string& unit = "");
 
 /// "0.021(6)", the difference from the leading law and half of its 68 % interval.
 std::string difference_text(const HeldOutLaw& law);

@@ -38,7 +38,7 @@ std::string unit_of_values(const CurveUnits& units) {
 std::string one_asymptote(const Estimate& estimate, const CurveUnits& units) {
   const std::string& name = estimate.parameter.name;
   const std::string unit = unit_of_values(units);
-  const std::string value = name + " " + estimate_text(estimate) + unit;
+  const std::string value = name + " " + estimate_text(estimate, unit);
   const std::string none = name + " has no value";
   if (estimate.identifiability <= Identifiability::not_examined)
     return estimate.has_value() ? value : none;

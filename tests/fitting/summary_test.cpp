@@ -62,6 +62,28 @@ TEST_CASE("A summary reports an asymptote without a value in words, with its lim
   CHECK(summary(fits, {}, {}).asymptote == "X_inf has no value");
 }
 
+TEST_CASE("A summary of fixed parameters identifies none of them") {
+  std::vector<Fit> fits = {fit_with_asymptote("a", {0.58, 0.62})};
+  fits[0].estimates[0].identifiability = Identifiability::fixed;
+  CHECK(summary(fits, {}, {"mm", "s"}).choice == "a: all parameters fixed");
+  CHECK(summary(fits, {}, {"mm", "s"}).asymptote == "X_inf 0.6 mm fixed");
+  Estimate time;
+  time.parameter.name = "tau";
+  time.identifiability = Identifiability::identified;
+  fits[0].estimates.push_back(time);
+  fits[0].n_free = 1;
+  CHECK(summary(fits, {}, {}).choice == "a: all free parameters identified");
+}
+
+TEST_CASE("A summary has the unit of an asymptote beside its number") {
+  std::vector<Fit> fits = {fit_with_asymptote("a", {0.58, 0.62})};
+  CHECK(summary(fits, {}, {"mm", "s"}).asymptote == "X_inf 0.6000(50) mm, 95 %: 0.58 to 0.62");
+  fits[0].estimates[0].intervals[0] = {-INFINITY, INFINITY};
+  fits[0].estimates[0].intervals[1] = {-INFINITY, INFINITY};
+  fits[0].estimates[0].identifiability = Identifiability::not_examined;
+  CHECK(summary(fits, {}, {"mm", "s"}).asymptote == "X_inf 0.6 mm, error unknown");
+}
+
 TEST_CASE("A summary has the most severe warning of the laws that are not rejected") {
   std::vector<Fit> fits = {fit_with_asymptote("a", {0.58, 0.62}),
                            fit_with_asymptote("b", {0.59, 0.64})};
