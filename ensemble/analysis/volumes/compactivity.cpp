@@ -272,9 +272,11 @@ CompactivityVerdict compactivity_verdict(std::span<const CompactivityStep> steps
     verdict.statement = fmt::format("disagree: {}", tests);
   } else if (verdict.separation < CompactivityVerdict::least_separation) {
     verdict.statement = finite_text(
-        "cannot decide: neighbours lie at most {:.2g} deviations apart, where the two would agree "
-        "for any distribution; take wider steps ({})",
-        verdict.separation, tests);
+        "cannot decide: {} at most {:.2g} deviations apart, where the two would agree for any "
+        "distribution; take {} ({})",
+        overlapping == steps.size() ? "neighbours are" : "neighbours that overlap are",
+        verdict.separation,
+        overlapping == steps.size() ? "wider steps" : "steps of 0.5 to 2 deviations", tests);
   } else if (!std::isfinite(verdict.detectable)) {
     verdict.statement =
         fmt::format("cannot decide: {}; no disagreement, however large, would be found", tests);

@@ -262,6 +262,21 @@ TEST_CASE("Realizations that do not differ decide nothing on compactivities") {
       drifting.statement.starts_with("cannot decide: the states of all realizations drift by 5 "));
 }
 
+TEST_CASE("Steps are advised by the neighbours that overlap") {
+  CompactivityStep steps[] = {{.start = 0, .end = 1}, {.start = 1, .end = 2}};
+  steps[0].separation = 0.3;
+  steps[0].overlaps = true;
+  steps[0].fluctuations = {1, {1, 1.1, 0.9}};
+  steps[0].histograms = {1, {1.1, 0.9, 1}};
+  steps[0].curvature = {0, {0.1, -0.1, 0}};
+  steps[1].separation = 3;
+  const auto statement = [&](std::size_t n) {
+    return compactivity_verdict({steps, n}, {0.1, {0.5, 2}}).statement;
+  };
+  CHECK(statement(1).starts_with("cannot decide: neighbours are at most 0.3 deviations apart"));
+  CHECK(statement(2).find("neighbours that overlap are at most 0.3") != std::string::npos);
+}
+
 TEST_CASE("Close neighbours would agree whatever they are: no verdict") {
   const Setting setting{10, 1000, 0};
   std::vector<SteadyVolumes> states(2);
