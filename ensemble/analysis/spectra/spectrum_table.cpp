@@ -54,8 +54,9 @@ std::string drift_verdict(const Trend& trend, Detrending detrending) {
 /// The slope that memory alone gives.
 struct AutoregressiveSlope {
   double slope = 0;
-  ErrorOf error{};  // from that of the time
-  double p = 1;     // p-value for this value of the measured slope
+  ErrorOf error{};        // from that of the time
+  double p = 1;           // p-value for this value of the measured slope
+  double detectable = 0;  // difference of the slopes that is found with 80 % power
 };
 
 AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogSlope& measured,
@@ -75,8 +76,12 @@ AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogS
                                    value_at(memory.time - memory.error)),
                             bias, may_be_white ? found.slope : 0),
                  std::numeric_limits<double>::infinity()};
-  found.p =
-      p_value(measured.slope - found.slope, combined({measured.error, measured.dof}, found.error));
+  const ErrorOf difference_error = combined({measured.error, measured.dof}, found.error);
+  found.p = p_value(measured.slope - found.slope, difference_error);
+  found.detectable =
+      difference_error.known()
+          ? difference_error.error * smallest_effect_found(significance_level, difference_error.dof)
+          : std::numeric_limits<double>::infinity();
   return found;
 }
 
@@ -95,8 +100,14 @@ std::string slope_verdict(const LogLogSlope& slope, const AutoregressiveSlope& m
       time.time, memory.slope);
   if (std::isnan(memory.p)) return alone + "; no test";
   if (memory.p >= significance_level) {
-    return finite_text("{}: the slope does not differ significantly from it ({})", alone,
-                       p_text(memory.p));
+    // Half the range of AR(1), from 0 of white noise to -2.
+    constexpr double largest_unseen = 1;
+    const bool decides = memory.detectable <= largest_unseen;
+    return finite_text(
+        "{}{}: the slope does not differ significantly from it ({}){} differences of {:.2g} or "
+        "more (80 % power)",
+        decides ? "" : "cannot decide: ", alone, p_text(memory.p),
+        decides ? "; the test finds" : ", but the test finds only", memory.detectable);
   }
   return finite_text("{}: the slope differs from it ({})", alone, p_text(memory.p));
 }

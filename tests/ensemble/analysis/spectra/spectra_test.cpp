@@ -254,6 +254,26 @@ TEST_CASE("A constant series has neither drift nor slope, in words without a num
   }
 }
 
+TEST_CASE("A slope is compared with AR(1) only where the test can find a difference") {
+  const auto verdict_of = [](std::size_t n_taps, std::size_t realizations) {
+    SpectrumAnalysis analysis({.observable = "x", .units = "1", .first_tap = 1, .last_tap = n_taps},
+                              SpectrumSettings{});
+    for (std::size_t r = 0; r < realizations; ++r)
+      analysis.add(synthetic::autoregressive(0.9, n_taps, 20261129, r));
+    const Table table = analysis.table();
+    return std::ranges::find(table.notes, "verdict", [](const auto& entry) { return entry.first; })
+        ->second;
+  };
+  const std::string decided = verdict_of(4000, 10);
+  CHECK(decided.starts_with("a stationary AR(1) with the same autocorrelation time"));
+  CHECK(decided.find("; the test finds differences of ") != std::string::npos);
+  const std::string undecided = verdict_of(100, 3);
+  CAPTURE(undecided);
+  CHECK(undecided.starts_with(
+      "cannot decide: a stationary AR(1) with the same autocorrelation time"));
+  CHECK(undecided.find(", but the test finds only differences of ") != std::string::npos);
+}
+
 TEST_CASE("Bands with too few points give no slope") {
   const std::vector<double> frequency{0.1, 0.2, 0.3, 0.4}, density{4, 3, 0, 1};
   CHECK(std::isnan(log_log_slope(frequency, density, {0.1, 0.35}).slope));
