@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,7 @@
 
 #include "ensemble/statistics/finite_text.hpp"
 #include "ensemble/statistics/mean_error.hpp"
+#include "fitting/intervals/distributions.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -16,6 +18,17 @@ namespace {
 
 // Fewer independent values of one realization give no honest error, and no steady state.
 constexpr double fewest_for_error = 4, fewest_for_verdict = 10;
+
+// True if blocks without a plateau scatter by more than this error of the mean allows, as a slow
+// memory beside a fast one does: F-test of the largest error by blocking, which is a lower bound.
+bool is_below_blocking(const ErrorOf& error, const BlockingResult& blocking) {
+  constexpr double level = 0.01;
+  if (blocking.plateau || !error.known() || !(error.error > 0)) return false;
+  const auto largest = std::ranges::max_element(blocking.levels, {}, &BlockingLevel::error);
+  if (largest == blocking.levels.end()) return false;
+  return fisher_tail(std::pow(largest->error / error.error, 2),
+                     static_cast<double>(largest->n_blocks) - 1, error.dof) < level;
+}
 
 // The reason why the taps cannot decide; empty if they can.
 std::string reasons_for_doubt(const SteadyState& state) {
@@ -37,7 +50,8 @@ std::string reasons_for_doubt(const SteadyState& state) {
     add(finite_text("{} taps are fewer than {} autocorrelation times ({:.3g} taps)", state.n_taps,
                     SteadyStateTest::fewest_times, state.autocorrelation.time));
   }
-  if (state.realizations == 1 && state.independent_values < fewest_for_verdict) {
+  if (state.realizations == 1 &&
+      (state.independent_values < fewest_for_verdict || !state.error.known())) {
     add("the one realization remembers for as long as the taps");
   }
   return reasons;
@@ -123,7 +137,8 @@ SteadyState SteadyStateTest::result() const {
     const MeanError found = mean_error(only_);
     state.error = found.error;
     state.independent_values = found.independent_values;
-    if (state.independent_values < fewest_for_error) {
+    if (state.independent_values < fewest_for_error ||
+        is_below_blocking(found.error, state.blocking)) {
       state.error = {std::fmax(found.error.error, state.blocking.error()), 0};
     }
   } else {

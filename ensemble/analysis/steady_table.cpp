@@ -72,7 +72,7 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
                    !single               ? "standard error over realizations"
                    : state.error.known() ? "error from the memories that the taps of the one "
                                            "realization allow, for Student's t of value_dof"
-                                         : "none: fewer than four independent values"),
+                                         : "none: the taps are too few for the memory"),
       single_value("value_dof", state.error.dof, "1", "degrees of freedom of value_error"),
       single_value("blocked_error", state.blocking.error(), series.units,
                    has_blocked_error ? "standard error by blocking, realizations pooled"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "tests/ensemble/synthetic_series.hpp"
 #include "tests/test_files.hpp"
@@ -249,4 +250,21 @@ TEST_CASE("Realizations that keep to themselves have a larger error than blockin
   const SteadyState state = steady_state(ensemble);
   CHECK(state.error.error > 5 * state.blocking.error());
   CHECK(state.verdict() == Verdict::reached);
+}
+
+TEST_CASE("One realization has no error that its blocks refute: a slow memory beside a fast one") {
+  int refuted = 0;
+  for (std::uint64_t e = 0; e < 5; ++e) {
+    const std::vector<double> fast = synthetic::autoregressive(0.7, 1000, 51 + e);
+    CHECK(steady_state({fast}).error.known());
+    std::vector<double> mixed = fast;
+    for (std::size_t t = 0; t < mixed.size(); ++t)
+      mixed[t] += 4 * std::sin(2 * std::numbers::pi * static_cast<double>(t) / 600);
+    const SteadyState state = steady_state({mixed});
+    CHECK(state.verdict() != Verdict::reached);
+    if (state.error.known()) continue;
+    ++refuted;
+    CHECK(state.error.error >= state.blocking.error());
+  }
+  CHECK(refuted >= 4);
 }
