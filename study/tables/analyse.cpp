@@ -28,17 +28,24 @@ struct AnalysisContext {
   const std::function<const PointScenes&()>& scenes;  // read when first asked for
 };
 
+/// Adds the note on taps of several strengths, where there are some.
+Table with_strengths(Table table, const AnalysedSeries& taps, const AnalysisContext& context) {
+  std::string note = several_strengths(context.scenes().point_scene(context.point), taps);
+  if (!note.empty()) table.notes.emplace_back("strengths", std::move(note));
+  return table;
+}
+
 Table make_table(const ObservableSeries& series, const SteadySettings& settings,
-                 const AnalysisContext&) {
+                 const AnalysisContext& context) {
   const AnalysedSeries analysed = last_taps(series, settings.last, 4, SteadyStateTest::fewest_taps);
   SteadyStateTest test;
   series.for_each({analysed.first_tap, analysed.last_tap + 1},
                   [&](std::span<const double> values) { test.add(values); });
-  return steady_table(analysed, test.result());
+  return with_strengths(steady_table(analysed, test.result()), analysed, context);
 }
 
 Table make_table(const ObservableSeries& series, const SpectrumSettings& settings,
-                 const AnalysisContext&) {
+                 const AnalysisContext& context) {
   const AnalysedSeries analysed = last_taps(series, settings.last, 2, fewest_spectrum_taps);
   if (settings.segment && *settings.segment > analysed.n_taps()) {
     throw BadInput(fmt::format("a segment of {} taps is longer than the {} analysed",
@@ -47,7 +54,7 @@ Table make_table(const ObservableSeries& series, const SpectrumSettings& setting
   SpectrumAnalysis analysis(analysed, settings);
   series.for_each({analysed.first_tap, analysed.last_tap + 1},
                   [&](std::span<const double> values) { analysis.add(values); });
-  return analysis.table();
+  return with_strengths(analysis.table(), analysed, context);
 }
 
 /// A lag of a tap follows the last waiting time.
@@ -173,6 +180,20 @@ AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint
           .units = series.label().units,
           .first_tap = available + 1 - wanted,
           .last_tap = available};
+}
+
+std::string several_strengths(const Scene& scene, const AnalysedSeries& taps) {
+  const std::vector<Stage> protocol = stages(scene.protocol);
+  std::uint64_t first = 1, next = 1;  // tap of the last strength; of the stage
+  for (std::size_t i = 0; i < protocol.size() && next <= taps.last_tap; ++i) {
+    if (i > 0 && !(protocol[i].tap == protocol[i - 1].tap)) first = next;
+    next += protocol[i].count;
+  }
+  if (taps.first_tap >= first) return "";
+  return fmt::format(
+      "taps {} to {} have other strengths than taps {} to {}: for one strength set last to {} or "
+      "less",
+      taps.first_tap, first - 1, first, taps.last_tap, taps.last_tap + 1 - first);
 }
 
 std::optional<Verdict> steadiness(const ObservableSeries& series, const AnalysedSeries& taps) {

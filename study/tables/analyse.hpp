@@ -30,6 +30,10 @@ AnalysedSeries last_taps(const ObservableSeries& series, std::optional<std::uint
                          std::uint64_t divisor, std::uint64_t least,
                          std::optional<std::uint64_t> rows = std::nullopt);
 
+/// "taps 151 to 160 have other strengths than taps 161 to 200: for one strength set last to 40 or
+/// less"; empty where all have one.
+std::string several_strengths(const Scene& scene, const AnalysedSeries& taps);
+
 /// True if these taps are steady, as the analysis of that name decides; nothing where they are too
 /// few for it.
 std::optional<Verdict> steadiness(const ObservableSeries& series, const AnalysedSeries& taps);

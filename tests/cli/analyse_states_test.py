@@ -112,6 +112,18 @@ class States(Analysed):
         self.assertIn("at least two stages", self.jostle(
             "analyse", "tiny.h5", "memory", "--observable", "mean_height", expect=BAD_INPUT).stderr)
 
+    def test_taps_of_several_strengths_are_named(self):
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.2}, "count": 60},
+                                           {"tap": {"dilate": 0.05}, "count": 40},
+                                           {"tap": {"dilate": 0.05}, "count": 20}]))
+        self.run_scene()
+        for analysis in ("steady", "spectrum", "sweep"):
+            command = ("tiny.h5", analysis, "--observable", "mean_height", "--no-store", "--last")
+            for last, expected in (("60", None), ("70", "taps 51 to 60 have other strengths than taps 61 to 120: "
+                                                        "for one strength set last to 60 or less")):
+                for table in self.analyse(*command, last)["tables"]:
+                    self.assertEqual(table["notes"].get("strengths"), expected, table["name"])
+
     def test_hysteresis_of_a_ramp_up_and_down(self):
         ramp = {"sqrt_from": 0.1, "sqrt_to": 0.3, "sqrt_step": 0.1}
         down = {**ramp, "sqrt_from": 0.2, "sqrt_to": 0.1}

@@ -29,6 +29,7 @@ namespace {
 struct Member {
   const ResultsFile* file = nullptr;
   std::uint32_t point = 0;
+  const Scene* scene = nullptr;
   ReachedTaps reached;
   SweptPlace place;
   std::vector<double> realizations;  // with the value, by number; empty for other quantities
@@ -37,6 +38,7 @@ struct Member {
   Column label;
   RandomKey key;
   std::string taps;                // whose mean the value is: "151 to 200"
+  std::string strengths;           // where these differ in strength
   std::optional<Verdict> steady;   // verdict on these taps; none for too few
   std::string no_value;            // why it has none, where that is known
   std::string copies;              // text of ObservableSeries::copies()
@@ -58,6 +60,7 @@ void set_values(std::span<Member> members, const std::string& observable,
     const AnalysedSeries taps = last_taps(series, last, 4, 1, shared.rows[i]);
     const std::vector<double> means = series.means({taps.first_tap, taps.last_tap + 1});
     member.taps = fmt::format("{} to {}", taps.first_tap, taps.last_tap);
+    member.strengths = several_strengths(*member.scene, taps);
     member.steady = steadiness(series, taps);
     member.realizations.assign(member.file->study().realizations, not_a_number);
     for (std::size_t r = 0; r < means.size(); ++r)
@@ -172,9 +175,12 @@ void add_conditions(std::span<const Member> members, Table& table) {
 
 /// The averaged taps, and points without a value.
 void add_notes(std::span<const Member> members, Table& table) {
-  std::vector<std::string> taps;
+  std::vector<std::string> taps, strengths;
   std::string left_out;
   for (const Member& member : members) {
+    if (!member.strengths.empty() &&
+        std::ranges::find(strengths, member.strengths) == strengths.end())
+      strengths.push_back(member.strengths);
     if (!member.taps.empty() && std::ranges::find(taps, member.taps) == taps.end())
       taps.push_back(member.taps);
     if (!member.no_value.empty()) {
@@ -183,6 +189,7 @@ void add_notes(std::span<const Member> members, Table& table) {
     }
   }
   if (!taps.empty()) table.notes.emplace_back("taps", joined(taps, ", "));
+  if (!strengths.empty()) table.notes.emplace_back("strengths", joined(strengths, "; "));
   if (!left_out.empty()) table.notes.emplace_back("left_out", left_out);
   std::string errors;
   if (members.front().label.long_name == parameter_of_a_fit)
@@ -307,6 +314,7 @@ std::vector<Member> members_of(std::span<SweptFile> files,
       Member member;
       member.file = file;
       member.point = point;
+      member.scene = &scenes.point_scene(point);
       const ObservableSeries series(*file, point, observable);
       member.label = series.label();
       member.copies = series.copies();
