@@ -135,10 +135,11 @@ void say_which_tables_are_gone(const std::vector<std::string>& tables_before,
   if (gone.empty()) return;
   std::string lines;
   for (const std::string& name : gone) lines.append("\n  ").append(name);
-  print_to_standard_error(fmt::format(
-      "jostle: these tables were computed from the data before this run, and were removed from {}; "
-      "compute those that you need again:{}\n",
-      output, lines));
+  print_to_standard_error(
+      fmt::format("jostle: a resumed run removes the tables of the run before, because data or "
+                  "settings may have "
+                  "changed. Removed from {}; compute those that you need again:{}\n",
+                  output, lines));
 }
 
 /// The curve that was computed, and the commands that go on from it.

@@ -214,11 +214,10 @@ std::string cost_text(const CostStudy& study, const CostOfObservable& cost,
           : "not known",
       scene_realizations, scene_realizations == 1 ? "" : "s",
       core_time(own.realization_seconds * scene_realizations), study.taps());
-  head += fmt::format(
-      "\n{}: pilots after {} tap{}, {} replicates, against {}; a(b): b is half the 68 % "
-      "interval\n",
-      cost.label.name, study.pilot_taps(), study.pilot_taps() == 1 ? "" : "s", study.replicates(),
-      study.settings()[study.reference().last].name);
+  head += fmt::format("\n{}: pilots after {}, {}, against {}; a(b): b is half the 68 % interval\n",
+                      cost.label.name, counted(study.pilot_taps(), "tap"),
+                      counted(study.replicates(), "replicate"),
+                      study.settings()[study.reference().last].name);
   const std::string footer =
       "front: no other setting has both a smaller |bias| + error and a smaller time.\n" +
       meaning_of_half(study) + shortfall_of_the_reference(cost) + doubt_of_the_reference(study) +

@@ -113,8 +113,7 @@ void describe_keep(ObjectSchema& schema, Definitions&) {
   schema.properties["keep"] = described_as(
       names, "Kept data of a snapshot",
       "Default of Monte Carlo: positions, coordination and height_histogram. Discrete elements "
-      "also "
-      "keep velocities (and spins, with friction), contacts with their forces, "
+      "also keep velocities (and spins, with friction), contacts with their forces, "
       "granular_temperature by height, and forces (of floor and sides, and the force-moment tensor "
       "of the bed). Velocities and contacts require positions. driven_temperature, on request, is "
       "the granular temperature while a half_sine or a vibration moves the floor.",

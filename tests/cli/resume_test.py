@@ -134,7 +134,7 @@ class Tables(Case):
         self.jostle("structure", "tiny.h5", "--part", "profile")
         self.write(changed(TINY, realizations=4))
         more = self.run_scene("--resume")
-        self.assertIn("removed from tiny.h5", more.stderr)
+        self.assertIn("Removed from tiny.h5", more.stderr)
         self.assertIn("structure/point_0000/profile", more.stderr)
         self.assertEqual(self.names(), [])
 
