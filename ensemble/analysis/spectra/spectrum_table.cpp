@@ -54,13 +54,16 @@ std::string drift_verdict(const Trend& trend, Detrending detrending) {
 /// The slope that memory alone gives.
 struct AutoregressiveSlope {
   double slope = 0;
-  ErrorOf error{};        // from that of the time
-  double p = 1;           // p-value for this value of the measured slope
-  double detectable = 0;  // difference of the slopes that is found with 80 % power
+  ErrorOf error{};  // from that of the time
+  double p = 1;     // p-value for this value of the measured slope
+  /// Difference of the slopes that is found with 80 % power. NaN of one realization: where it hides
+  /// a memory, both the difference and its error are too small.
+  double detectable = not_a_number;
 };
 
 AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogSlope& measured,
-                                   const AutocorrelationTime& memory, const Band& band) {
+                                   const AutocorrelationTime& memory, const Band& band,
+                                   std::size_t n_realizations) {
   // Below 1/2, rho is negative and the spectrum rises with the frequency.
   constexpr double shortest = 1e-4;
   const auto value_at = [&](double time) {
@@ -78,10 +81,9 @@ AutoregressiveSlope autoregressive(const SpectrumAverage& average, const LogLogS
                  std::numeric_limits<double>::infinity()};
   const ErrorOf difference_error = combined({measured.error, measured.dof}, found.error);
   found.p = p_value(measured.slope - found.slope, difference_error);
-  found.detectable =
-      difference_error.known()
-          ? difference_error.error * smallest_effect_found(significance_level, difference_error.dof)
-          : std::numeric_limits<double>::infinity();
+  if (n_realizations > 1 && difference_error.known())
+    found.detectable =
+        difference_error.error * smallest_effect_found(significance_level, difference_error.dof);
   return found;
 }
 
@@ -99,17 +101,17 @@ std::string slope_verdict(const LogLogSlope& slope, const AutoregressiveSlope& m
       "a stationary AR(1) with the same autocorrelation time, {:.3g} taps, has {:.2f} here",
       time.time, memory.slope);
   if (std::isnan(memory.p)) return alone + "; no test";
-  if (memory.p >= significance_level) {
-    // Half the range of AR(1), from 0 of white noise to -2.
-    constexpr double largest_unseen = 1;
-    const bool decides = memory.detectable <= largest_unseen;
-    return finite_text(
-        "{}{}: the slope does not differ significantly from it ({}){} differences of {:.2g} or "
-        "more (80 % power)",
-        decides ? "" : "cannot decide: ", alone, p_text(memory.p),
-        decides ? "; the test finds" : ", but the test finds only", memory.detectable);
-  }
-  return finite_text("{}: the slope differs from it ({})", alone, p_text(memory.p));
+  if (memory.p < significance_level)
+    return finite_text("{}: the slope differs from it ({})", alone, p_text(memory.p));
+  const std::string no_difference = finite_text(
+      "{}: the slope does not differ significantly from it ({})", alone, p_text(memory.p));
+  if (std::isnan(memory.detectable))
+    return "cannot decide: " + no_difference + "; what one realization would find is not known";
+  // Half the range of AR(1), from 0 of white noise to -2.
+  constexpr double largest_unseen = 1;
+  return finite_text("{}{}; the test finds most differences of {:.2g} or more",
+                     memory.detectable <= largest_unseen ? "" : "cannot decide: ", no_difference,
+                     memory.detectable);
 }
 
 }  // namespace
@@ -145,7 +147,8 @@ Table SpectrumAnalysis::table() const {
                                    .highest = 0.5});
   const LogLogSlope slope = average_.slope(band);
   const AutocorrelationTime time = trend_.unbiased_memory();
-  const AutoregressiveSlope memory = autoregressive(average_, slope, time, band);
+  const AutoregressiveSlope memory =
+      autoregressive(average_, slope, time, band, spectrum.realizations);
   const double dof = spectrum.realizations > 1 ? static_cast<double>(spectrum.realizations - 1)
                                                : std::numeric_limits<double>::infinity();
   std::vector<std::uint64_t> lines;
@@ -180,6 +183,8 @@ Table SpectrumAnalysis::table() const {
       "standard error, from that of the time, and 0.03 for the bias of short series");
   add("ar1_slope_dof", memory.error.dof, "1", "degrees of freedom of ar1_slope_error");
   add("ar1_slope_p", memory.p, "1", "p-value of the slope being ar1_slope, Student's t");
+  add("ar1_slope_detectable", memory.detectable, "1",
+      "difference from ar1_slope that most ensembles would find at 5 %: nominal power 0.8");
   add("drift", trend.line.value, series_.units,
       "change of the mean over the taps, by a straight line");
   add("drift_error", error_or_nan(trend.line.error()), series_.units,
