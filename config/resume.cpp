@@ -115,7 +115,7 @@ std::string after_the_last(std::uint64_t last) {
 std::optional<std::string> changed_snapshots(const Scene& was, const Scene& is) {
   const std::uint64_t last = total_taps(was.protocol);
   return changed_choice("snapshot of tap", last + 1, after_the_last(last),
-                        snapshot_taps(was.snapshots, total_taps(was.protocol)),
+                        snapshot_taps(was.snapshots, last),
                         snapshot_taps(is.snapshots, total_taps(is.protocol)));
 }
 

@@ -9,12 +9,13 @@ import numpy as np
 from matplotlib import pyplot
 
 import contrasts
+import contrasts_of_campaign as campaign
 import drawings
 import validation
 from published import FIGURES
 from scores import (COMPATIBLE, DECIDED, NOT, QUALITATIVE, REPRODUCED, STATUS, UNDERPOWERED, Claim, Score, all_scores,
                     counts, false_discoveries, of_interval, of_printed, positive, status_of_figure, within)
-from verdicts import LEVEL, POWER, Estimate
+from verdicts import LEVEL, POWER, Estimate, p_two_sided
 
 ENSEMBLES = 1000 if os.environ.get("JOSTLE_EVERY") else 300
 
@@ -150,6 +151,43 @@ def rows_of_one_statement_share_a_variance():
     check([e.value for e in found] == [-1.71, -1.57, -1.42, -1.30], found)
 
 
+def beds_of_the_campaign_are_paired():
+    """By realization, where the strengths have different beds."""
+    at_hand = {0.01: [0, 2, 5], 0.1: [0, 3, 5]}
+    values = {0.01: np.array([10.0, 20, 30]), 0.1: np.array([1.0, 2, 3])}
+    with mock.patch.object(campaign, "point_at", lambda strength: strength), \
+            mock.patch.object(campaign, "realizations", lambda _, strength: at_hand[strength]):
+        check(list(campaign.in_pairs(0.01, 0.1, values.get)) == [9, 27], "in_pairs")
+        with mock.patch.object(campaign, "STRENGTHS", (0.01, 0.1)):
+            mean = campaign.over_strengths(values.get)
+    check((mean.value, mean.dof) == (11, 1), "over_strengths", mean)
+
+
+def common_beds_keep_their_size(random):
+    """Five beds that start every strength scatter more than the strengths of a bed do."""
+    alarms = 0
+    with mock.patch.object(campaign, "point_at", lambda strength: strength), \
+            mock.patch.object(campaign, "realizations", lambda *_: range(5)):
+        for _ in range(ENSEMBLES):
+            common = random.normal(0, 1, 5)
+            mean = campaign.over_strengths(lambda _: common + random.normal(0, 0.3, 5))
+            alarms += p_two_sided(mean) < LEVEL
+    at_most(alarms / ENSEMBLES, LEVEL, "common beds")
+
+
+def added_errors_keep_the_size(random):
+    """A difference of places of one profile, whose errors are added, with correlated places."""
+    x, alarms = np.arange(0.05, 4, 0.1), 0
+    with mock.patch.object(campaign, "point_at", lambda strength: strength), \
+            mock.patch.object(campaign, "beds_of_point", lambda *_: 3), \
+            mock.patch.object(campaign, "distribution") as distribution:
+        for _ in range(ENSEMBLES):
+            beds = random.normal(0, 1, (3, 1)) + random.normal(0, 1, (3, len(x)))
+            distribution.return_value = {campaign.LAST: (x, beds.mean(axis=0), beds.std(axis=0, ddof=1) / 3**0.5)}
+            alarms += p_two_sided(campaign.full_floor_peaks()[0]) < LEVEL
+    at_most(alarms / ENSEMBLES, LEVEL, "added errors")
+
+
 def printed_numbers(random):
     """The paper's mean errs by 0.001. Compatible means: a difference of `relevant` is missed in at most 20 %."""
     claim = Claim("", "", "printed", printed=0.597, printed_error=0.001, margin=0.0005, relevant=0.01)
@@ -212,10 +250,11 @@ def main():
     words_of_figures()
     one_bed_decides_nothing()
     rows_of_one_statement_share_a_variance()
+    beds_of_the_campaign_are_paired()
     random = np.random.default_rng(51304)
     for test in (contrasts_keep_their_size, all_positive_keep_their_size, margins_keep_their_size, printed_numbers,
                  tops_are_covered, false_decisions, least_effects_keep_their_size,
-                 laws_that_do_not_fit_are_found):
+                 common_beds_keep_their_size, added_errors_keep_the_size, laws_that_do_not_fit_are_found):
         test(random)
 
 
