@@ -25,6 +25,7 @@ AXES = {"profile": "height", "sides": "x", "layers": "height", "coordination": "
 KEPT = {"profile": ("phi",), "sides": ("phi_xy",), "layers": ("n",), "coordination": ("neighbour_share",),
         "voronoi": ("free_volume_density",), "pores": ("rho_v", "v_rho_v"), "void_probability": ("p0", "p0_gotoh")}
 SINGLE = {"void_probability": (1.2,)}  # places whose values are kept of each bed, for differences within beds
+LAYERS = 15          # the lowest, whose shares are kept of each bed
 
 
 class OtherScene(Exception):
@@ -104,6 +105,9 @@ def structure_of(jostle, path, scene, point, realization, taps):
                 numbers += [(tap, f"{part}/{name}({x:g})", value) for tap, row in zip(taps, values)
                             for x, value in zip(places, row)
                             if value is not None and np.isclose(x, SINGLE.get(part, ())).any()]
+            elif (part, name) == ("layers", "share"):
+                numbers += [(tap, f"layers/share({layer + 1})", value) for tap, row in zip(taps, values)
+                            for layer, value in enumerate(row[:LAYERS]) if value is not None]
     return numbers, curves
 
 

@@ -1,6 +1,6 @@
 """Contrasts of the reduced tables: means of points less means of others, variances pooled over all points of a
-column (Estimate.pooled), or each point's own (Welch 1947) where they differ. contrasts_of_beds.py and
-contrasts_of_campaign.py have those of data bed by bed."""
+column (Estimate.pooled), or each point's own (Welch 1947) where they differ. The
+contrasts_of_*.py have those of data bed by bed."""
 import re
 
 import numpy as np

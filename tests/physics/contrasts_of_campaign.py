@@ -1,7 +1,7 @@
 """Contrasts of the campaign of [PB] 3 and 6 to 8: 4096 spheres, 4000 taps, four strengths."""
 import numpy as np
 
-from distributions import beds_of_point, distribution, numbers, point_of, realizations, spectrum
+from distributions import beds_of_point, differences, distribution, numbers, point_of, realizations, spectrum
 from verdicts import Estimate
 
 CAMPAIGN = "pb-campaign"
@@ -22,8 +22,7 @@ def by_realization(strength, values):
 
 def in_pairs(first, second, values):
     """Differences between two strengths, of the realizations that both have."""
-    beds, others = by_realization(first, values), by_realization(second, values)
-    return np.array([beds[bed] - others[bed] for bed in beds if bed in others])
+    return differences(by_realization(first, values), by_realization(second, values))
 
 
 def log_power(strength, band):

@@ -9,6 +9,11 @@ def realizations(run, point):
     return [int(row[1]) for row in read_table(REDUCED / run / "beds.csv")[1:] if row[0] == str(point)]
 
 
+def differences(beds, others):
+    """Differences of two {realization: value}, of the realizations that both have."""
+    return np.array([beds[bed] - others[bed] for bed in beds if bed in others])
+
+
 def beds_of_point(run, point):
     return len(realizations(run, point))
 

@@ -28,7 +28,7 @@ SCENE = {"name": "tiny", "description": ["two strengths"], "seed": 7, "realizati
          "observe": ["mean_height", {"bulk_fraction": {"name": "floor", "heights": [0, 2]}}],
          "snapshots": {"taps": [0, 6], "keep": ["positions", "height_histogram"], "bin_width": 0.5},
          "sweep": {"/protocol/0/tap/dilate": [0.02, 0.1]},
-         "structure": {"profile": {}, "pores": {}, "void_probability": {"points": 2000}}}
+         "structure": {"profile": {}, "layers": {}, "pores": {}, "void_probability": {"points": 2000}}}
 
 
 def check(holds, *found):
@@ -143,6 +143,8 @@ def reduced_data_are_those_of_one_run(place):
     total = next(float(row[4]) for row in place.rows("first", "distributions")
                  if row[:4] == ["1", "6", "void_probability/p0", "1.2"])
     check(len(single) == 2 and np.isclose(sum(single), total, rtol=1e-5), "P0 of each bed", single, total)
+    shares = [float(row[4]) for row in place.rows("first", "structure") if row[3] == "layers/share(1)"]
+    check(len(shares) == 8 and all(0 <= share <= 1 for share in shares), "shares of layers", shares)
     check(not beds.add_beds(JOSTLE, whole, SCENE, copy), "beds are added twice")
 
 

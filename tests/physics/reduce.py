@@ -64,8 +64,11 @@ def text_of(dataset):
 
 
 def taps_to_keep(last):
-    """0 to 5 and then about eight taps per decade, the taps that the papers print, and the last."""
+    """0 to 5 and then about eight taps per decade, the taps that the papers print, and the last; of short runs every
+    25th, so that jumps of single beds are seen."""
     spaced = {round(10**(k / 8)) for k in range(60)} | {50, 100, 200, 250, 400, 800, 898, 1000}
+    if last < 1000:
+        spaced |= set(range(0, last, 25))
     return [tap for tap in sorted({0, 1, 2, 3, 4, 5, last} | spaced) if tap <= last]
 
 
