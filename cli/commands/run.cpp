@@ -136,9 +136,8 @@ void say_which_tables_are_gone(const std::vector<std::string>& tables_before,
   std::string lines;
   for (const std::string& name : gone) lines.append("\n  ").append(name);
   print_to_standard_error(
-      fmt::format("jostle: a resumed run removes the tables of the run before, because data or "
-                  "settings may have "
-                  "changed. Removed from {}; compute those that you need again:{}\n",
+      fmt::format("jostle: tables of fewer data were removed from {}; "
+                  "compute those that you need again:{}\n",
                   output, lines));
 }
 

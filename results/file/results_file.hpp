@@ -16,6 +16,8 @@
 
 namespace jostle::inline results {
 
+class WritableHdf5File;
+
 /// Written on the file: `running` until the first fold, then `interrupted` while realizations of
 /// the shard have taps left, else `complete` (with or without failed realizations).
 enum class RunState { running, interrupted, complete };
@@ -145,6 +147,7 @@ class ResultsFile {
   class Impl;
   class Stored;
   std::unique_ptr<Impl> impl_;
+  friend void copy_tables(const ResultsFile&, const WritableHdf5File&);
 };
 
 /// The changes that another program made to a file that it opened for writing and closed, where the

@@ -4,6 +4,7 @@
 #include "results/disk/temporary_file.hpp"
 #include "results/file/contents.hpp"
 #include "results/file/study_writer.hpp"
+#include "results/file/tables.hpp"
 #include "results/groups/layout.hpp"
 #include "results/groups/point_writer.hpp"
 #include "results/hdf5/writable_file.hpp"
@@ -39,6 +40,7 @@ void write_hdf5(const std::string& path, const FileContent& content) {
   if (content.realization)
     state = write_points(file, content) ? RunState::complete : RunState::interrupted;
   write_provenance(file, content, state);
+  if (content.tables_of != nullptr) copy_tables(*content.tables_of, file);
   write_contents(file);
   file.close();
 }

@@ -22,6 +22,8 @@ struct FileContent {
   std::function<std::unique_ptr<StoredRealization>(RealizationId)> realization;
   /// Receives the number of written realizations and the total; may be absent.
   StoringProgress progress = {};
+  /// The file whose derived tables are kept, with their origins; may be absent.
+  const ResultsFile* tables_of = nullptr;
 };
 
 /// Writes a whole results file and publishes it under `path`; `prepare` is called when all has been

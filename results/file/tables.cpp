@@ -113,6 +113,16 @@ void write_table(hid_t parent, const Table& table, const Provenance& provenance)
   }
 }
 
+/// How a table was made.
+Provenance origin_of(hid_t table) {
+  Provenance origin;
+  origin.version = read_text_attribute(table, "version");
+  origin.git_revision = read_text_attribute(table, "git_revision");
+  origin.command_line = read_text_attribute(table, "command_line");
+  origin.started = read_text_attribute(table, "made");
+  return origin;
+}
+
 std::string text_attribute_or_empty(hid_t object, const char* name) {
   return checked(H5Aexists(object, name)) > 0 ? read_text_attribute(object, name) : "";
 }
@@ -251,6 +261,19 @@ std::vector<std::string> store_tables(const std::string& named, std::span<const 
   seal(temporary.name());
   temporary.publish();
   return left;
+}
+
+void copy_tables(const ResultsFile& from, const WritableHdf5File& to) {
+  const Hdf5Handle& file = from.impl_->file();
+  Walk walk;
+  for (const std::string group : derived_groups) {
+    if (!exists(file, group)) continue;
+    const Hdf5Handle parent = group_at(to, group);
+    const auto copy = [&](hid_t table, const std::string& name) {
+      write_table(parent, read_table(table, name), origin_of(table));
+    };
+    for_each_table(open_group(file, group), "", walk, copy);
+  }
 }
 
 std::vector<Table> ResultsFile::tables(const std::string& group) const {

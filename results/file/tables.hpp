@@ -12,6 +12,9 @@
 // /structure. They can be made again from the data at any time, and are not part of the digest.
 namespace jostle::inline results {
 
+class ResultsFile;
+class WritableHdf5File;
+
 inline constexpr const char* derived_groups[] = {"analysis", "fits", "structure"};
 
 /// Tables that belong into one of the groups.
@@ -40,6 +43,9 @@ std::vector<std::string> store_tables(const std::string& path, const std::string
 std::vector<std::string> store_tables(const std::string& path, std::span<const TableGroup> groups,
                                       const Provenance& provenance, const Patience& patience = {},
                                       StoredResults stored = StoredResults::replaced);
+
+/// Writes all derived tables of a file into another that has none, with their origins.
+void copy_tables(const ResultsFile& from, const WritableHdf5File& to);
 
 /// The tables of a group, in the order of their names; none where there is no such group. Throws
 /// ResultsError.

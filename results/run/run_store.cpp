@@ -57,6 +57,13 @@ bool same_points(const Study& stored, const Study& study) {
   return std::ranges::equal(stored.points, study.points, {}, &StudyPoint::id, &StudyPoint::id);
 }
 
+/// True if a file of one study has the data that one of the other has, whatever their scenes say of
+/// tables.
+bool same_data(const Study& stored, const Study& study) {
+  return stored.realizations == study.realizations && same_points(stored, study) &&
+         std::ranges::equal(stored.points, study.points, {}, &StudyPoint::taps, &StudyPoint::taps);
+}
+
 }  // namespace
 
 class RunStore::Impl {
@@ -191,7 +198,9 @@ void RunStore::Impl::fold(const StoringProgress& progress) {
     if (!in_parts.contains(id)) return base;
     return continued(std::move(base), path, {run_id, id}, n_columns(id));
   };
-  const FileContent content{study, shard, processes, run_id, realization, progress};
+  const bool as_it_is = in_parts.empty() && same_data(file->study(), study);
+  const FileContent content{
+      study, shard, processes, run_id, realization, progress, as_it_is ? &*file : nullptr};
   if (!still_ours()) {
     const std::string new_path = path_with_ending(path, "." + run_id.substr(0, 8));
     write_results(new_path, content);

@@ -120,6 +120,10 @@ class Tables(Case):
         with h5py.File(self.folder / "tiny.h5") as file:
             return [name for name in ("analysis", "fits", "structure") if name in file]
 
+    def parts(self):
+        with h5py.File(self.folder / "tiny.h5") as file:
+            return list(file["structure/point_0000"])
+
     def test_a_resume_with_nothing_to_do_leaves_tables_and_file_alone(self):
         self.write(TINY)
         self.run_scene()
@@ -128,13 +132,37 @@ class Tables(Case):
         self.run_scene("--resume")
         self.assertEqual((self.folder / "tiny.h5").read_bytes(), before)
 
+    def test_a_resume_that_computes_no_taps_keeps_all_tables(self):
+        self.write(TINY)
+        self.run_scene()
+        self.jostle("structure", "tiny.h5", "--part", "profile")
+        with h5py.File(self.folder / "tiny.h5") as file:
+            before = self.contents(file["structure/point_0000/profile"])
+        self.write(changed(TINY, structure={"coordination": {}}))
+        more = self.run_scene("--resume")
+        self.assertNotIn("removed", more.stderr)
+        self.assertIn("coordination", self.parts())
+        with h5py.File(self.folder / "tiny.h5") as file:
+            self.assertEqual(self.contents(file["structure/point_0000/profile"]), before)
+        self.jostle("info", "tiny.h5")
+
+    @staticmethod
+    def contents(group):
+        """Values, attributes and axes of every dataset, and how the table was made."""
+        def values(array):
+            return array[()].tolist() if array.dtype.kind == "O" else array[()].tobytes()
+        return [(name, values(array), array.attrs.get("units"),
+                 [[axis.name for axis in axes.values()] for axes in array.dims])
+                for name, array in group.items()] + sorted(
+                    (name, str(value)) for name, value in group.attrs.items())
+
     def test_tables_of_fewer_data_are_dropped_by_name(self):
         self.write(TINY)
         self.run_scene()
         self.jostle("structure", "tiny.h5", "--part", "profile")
         self.write(changed(TINY, realizations=4))
         more = self.run_scene("--resume")
-        self.assertIn("Removed from tiny.h5", more.stderr)
+        self.assertIn("removed from tiny.h5", more.stderr)
         self.assertIn("structure/point_0000/profile", more.stderr)
         self.assertEqual(self.names(), [])
 
