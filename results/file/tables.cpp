@@ -263,16 +263,16 @@ std::vector<std::string> store_tables(const std::string& named, std::span<const 
   return left;
 }
 
-void copy_tables(const ResultsFile& from, const WritableHdf5File& to) {
-  const Hdf5Handle& file = from.impl_->file();
+void copy_tables(const ResultsFile& source, const WritableHdf5File& copy) {
+  const Hdf5Handle& file = source.impl_->file();
   Walk walk;
   for (const std::string group : derived_groups) {
     if (!exists(file, group)) continue;
-    const Hdf5Handle parent = group_at(to, group);
-    const auto copy = [&](hid_t table, const std::string& name) {
+    const Hdf5Handle parent = group_at(copy, group);
+    const auto write = [&](hid_t table, const std::string& name) {
       write_table(parent, read_table(table, name), origin_of(table));
     };
-    for_each_table(open_group(file, group), "", walk, copy);
+    for_each_table(open_group(file, group), "", walk, write);
   }
 }
 

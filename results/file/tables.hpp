@@ -45,7 +45,7 @@ std::vector<std::string> store_tables(const std::string& path, std::span<const T
                                       StoredResults stored = StoredResults::replaced);
 
 /// Writes all derived tables of a file into another that has none, with their origins.
-void copy_tables(const ResultsFile& from, const WritableHdf5File& to);
+void copy_tables(const ResultsFile& source, const WritableHdf5File& copy);
 
 /// The tables of a group, in the order of their names; none where there is no such group. Throws
 /// ResultsError.

@@ -57,8 +57,7 @@ bool same_points(const Study& stored, const Study& study) {
   return std::ranges::equal(stored.points, study.points, {}, &StudyPoint::id, &StudyPoint::id);
 }
 
-/// True if a file of one study has the data that one of the other has, whatever their scenes say of
-/// tables.
+/// True if files of both studies have the same data; scenes may differ in what is derived.
 bool same_data(const Study& stored, const Study& study) {
   return stored.realizations == study.realizations && same_points(stored, study) &&
          std::ranges::equal(stored.points, study.points, {}, &StudyPoint::taps, &StudyPoint::taps);

@@ -333,6 +333,15 @@ class Analyses(Analysed):
         self.assertEqual(curve["axes"]["sqrt_epsilon"]["values"], [0.1, 0.2, 0.3])
         self.assertTrue(0.4 < min(curve["quantities"]["bottom_fraction"]["values"]) < 0.7)
         self.assertEqual(self.tables("single0.h5"), [])
+        # The last taps are those of the last stage.
+        two_stages = changed(scene, name="stages", analyse={}, fits=[],
+                             protocol=[{"tap": {"dilate": 0.16}, "count": 4}, {"tap": {"dilate": 0.04}, "count": 60}])
+        del two_stages["sweep"]
+        self.write(two_stages)
+        self.run_scene()
+        (curve,) = self.analyse("single0.h5", "stages.h5", "single2.h5", "sweep", "--observable", "bottom_fraction",
+                                "--last", "50")["tables"]
+        self.assertEqual(curve["axes"]["sqrt_epsilon"]["values"], [0.1, 0.2, 0.3])
         self.jostle("analyse", "single0.h5", "single1.h5", "sweep", "--observable", "bottom_fraction", "--against",
                     "/protocol/0/tap/dilate")
         refused = self.jostle("analyse", "single0.h5", "single1.h5", "sweep", "--observable", "bottom_fraction",

@@ -61,8 +61,11 @@ std::string pointer_named(const std::string& name, const StudyPoint& swept) {
 SweptPlace swept_place(const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
                        std::string against) {
   SweptPlace place;
+  const auto& protocol = scenes.point_scene(point).protocol;
   if (against.empty()) {
-    against = swept.sweep_values.empty() ? "/protocol/0/tap" : swept.sweep_values.front().first;
+    const std::size_t last_stage = protocol.empty() ? 0 : protocol.size() - 1;
+    against = swept.sweep_values.empty() ? fmt::format("/protocol/{}/tap", last_stage)
+                                         : swept.sweep_values.front().first;
   } else if (against.front() != '/') {
     against = pointer_named(against, swept);
   }
@@ -73,13 +76,12 @@ SweptPlace swept_place(const StudyPoint& swept, const PointScenes& scenes, std::
         .append(" = ")
         .append(value);
   }
-  const Scene& scene = scenes.point_scene(point);
   const auto line = tap_line(against);
-  if (line && *line < scene.protocol.size() && !scene.protocol[*line].ramp) {
-    const Control strength = control(scene.protocol[*line].tap);
+  if (line && *line < protocol.size() && !protocol[*line].ramp) {
+    const Control strength = control(protocol[*line].tap);
     place.x = strength.value;
     place.swept = {strength.name, strength.units,
-                   scene.protocol.size() == 1
+                   protocol.size() == 1
                        ? "strength of the taps"
                        : fmt::format("strength of the taps of stage {}", *line + 1)};
     return place;

@@ -20,7 +20,7 @@ struct SweptPlace {
 };
 
 /// `against`: JSON pointer, or the name of what is swept; empty: the first of the sweep, the
-/// strength of the taps without one. Throws BadInput.
+/// strength of the last stage's taps without one. Throws BadInput.
 SweptPlace swept_place(const StudyPoint& swept, const PointScenes& scenes, std::uint32_t point,
                        std::string against);
 
