@@ -219,13 +219,16 @@ def inverse_log_at_weak_lift():
     pairs = [cell.split(" ± ") for cell in rows[0][1:8]]
     phi = np.array([float(value) for value, _ in pairs])
     error = np.sqrt(np.mean([float(half)**2 for _, half in pairs])) / stats.t.ppf(T68, 2)
-    misfits = [misfit_of_inverse_log(taps, phi, log_tau) for log_tau in np.arange(-4, 8, 0.25)]
-    best = min(misfits, key=lambda misfit: np.sum(misfit**2))
-    return [Estimate(float(value), float(error), 2 * len(taps)) for value in best]
+    return [Estimate(float(value), float(error), 2 * len(taps)) for value in misfit_of_inverse_log(taps, phi)]
 
 
-def misfit_of_inverse_log(taps, phi, log_tau):
-    """Residuals of the least squares in the other three parameters at one tau."""
+def misfit_of_inverse_log(taps, phi, log_taus=np.arange(-4, 8, 0.25)):
+    """Residuals of the least squares of eq. 3 of Philippe and Bideau 2001, tau from a list."""
+    return min((misfit_at_tau(taps, phi, log_tau) for log_tau in log_taus), key=lambda misfit: np.sum(misfit**2))
+
+
+def misfit_at_tau(taps, phi, log_tau):
+    """Those of the other three parameters at one tau."""
     grown = np.log1p(taps / np.exp(log_tau))
 
     def residuals(b):

@@ -42,6 +42,11 @@ def series(run, point, observable, tap):
     return np.array([float(row[at]) for row in rows if row[0] == str(point) and row[2] == str(tap)])
 
 
+def kept_taps(run, point):
+    """The taps at which series are kept, ascending."""
+    return sorted({int(row[2]) for row in read_table(REDUCED / run / "series.csv")[1:] if row[0] == str(point)})
+
+
 def label(run, point):
     return dict(read_table(REDUCED / run / "origin.csv")[1:])[f"point {point}"]
 

@@ -10,6 +10,7 @@ from scipy import stats
 import contrasts
 import contrasts_of_beds
 import contrasts_of_campaign
+import contrasts_of_growth
 import contrasts_of_taps
 from reduce import REDUCED, read_table
 from verdicts import LEVEL, Estimate, detectable, p_beyond, p_two_sided, p_within, share_above
@@ -71,8 +72,8 @@ def from_half_width(value, half, dof):
 def of_contrast(claim):
     """The estimates of the contrast that a claim names as its source."""
     name = claim.source[1:]
-    module = next(module for module in (contrasts, contrasts_of_beds, contrasts_of_campaign, contrasts_of_taps)
-                  if hasattr(module, name))
+    module = next(module for module in (contrasts, contrasts_of_beds, contrasts_of_campaign, contrasts_of_growth,
+                                        contrasts_of_taps) if hasattr(module, name))
     return getattr(module, name)()
 
 

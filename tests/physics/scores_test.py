@@ -10,6 +10,7 @@ from matplotlib import pyplot
 
 import contrasts
 import contrasts_of_campaign as campaign
+import contrasts_of_growth as growth
 import drawings
 import validation
 from published import FIGURES
@@ -128,14 +129,24 @@ def laws_that_do_not_fit_are_found(random):
     claim = Claim("", "", "within", margin=0.005)
 
     def best(phi):
-        return min((contrasts.misfit_of_inverse_log(taps, phi, log_tau) for log_tau in range(-4, 8, 2)),
-                   key=lambda misfit: np.sum(misfit**2))
+        return contrasts.misfit_of_inverse_log(taps, phi, range(-4, 8, 2))
     bump = np.where(taps == 50, 1.0, 0.0)
     bump *= 0.005 / np.max(np.abs(best(law + 0.005 * bump))) * 0.005
     for truth, word, bound in ((law + bump, REPRODUCED, LEVEL), (law, UNDERPOWERED, 1 - POWER)):
         found = rates([within(claim, [Estimate(float(m), 0.0015, 14) for m in best(
             truth + random.normal(0, 0.0015, len(taps)))])[0] for _ in range(ENSEMBLES // 3)])
         at_most(found[word], bound, f"inverse log, {word}")
+
+
+def levels_of_beds_are_no_misfit(random):
+    """misfit_of_means(): beds of different levels that follow one law fit, and a step of a margin and a half does not."""
+    taps = np.unique(np.geomspace(1, 4000, 25).round())
+    law = 0.61 - 0.035 / (1 + 0.25 * np.log1p(taps / 2))
+    beds = law[:, None] + random.normal(0, 0.02, 5) + random.normal(0, 0.001, (len(taps), 5))
+    claim = Claim("", "", "within", margin=0.005)
+    check(within(claim, growth.misfit_of_means(taps, beds))[0] == REPRODUCED, "a law with levels")
+    step = np.where(taps > 300, 0.015, 0.0)[:, None]
+    check(within(claim, growth.misfit_of_means(taps, beds + step))[0] == NOT, "a step")
 
 
 def one_bed_decides_nothing():
@@ -254,7 +265,8 @@ def main():
     random = np.random.default_rng(51304)
     for test in (contrasts_keep_their_size, all_positive_keep_their_size, margins_keep_their_size, printed_numbers,
                  tops_are_covered, false_decisions, least_effects_keep_their_size,
-                 common_beds_keep_their_size, added_errors_keep_the_size, laws_that_do_not_fit_are_found):
+                 common_beds_keep_their_size, added_errors_keep_the_size, laws_that_do_not_fit_are_found,
+                 levels_of_beds_are_no_misfit):
         test(random)
 
 
