@@ -191,9 +191,9 @@ std::string Trend::statement() const {
 
 std::string Trend::power(const std::string& only) const {
   const double relative = detectable_in_sigma();
-  const std::string found =
-      finite_text("the test finds {}drifts of {:.2g}{} or more over the taps (80 % power)", only,
-                  detectable, unit_behind(units));
+  const std::string found = finite_text(
+      "the test finds {}drifts of {:.2g}{} or more over the taps (80 % power{})", only, detectable,
+      unit_behind(units), line.scatter_error.known() ? "" : ", unless memory is underestimated");
   if (!std::isfinite(relative)) return found;
   return found + finite_text(", {:.2g} times the scatter of taps about their line", relative);
 }

@@ -53,7 +53,8 @@ struct Trend {
   std::string statement() const;
   /// "the test finds drifts of 0.01 or more over the taps (80 % power), 0.3 times the scatter of
   /// taps about their line", or with `only` "finds only drifts of". After at least one test, of
-  /// series that are not constant.
+  /// series that are not constant. One realization: "(80 % power, unless memory is
+  /// underestimated)", as it mostly is where few such series have a test.
   std::string power(const std::string& only = "") const;
   /// `detectable` in deviations `sigma`; 0 where every change is found, infinite without a test.
   double detectable_in_sigma() const { return detectable == 0 ? 0 : detectable / sigma; }

@@ -88,7 +88,11 @@ void check(const std::vector<Setting>& settings, std::size_t ensembles) {
     CHECK(alarms <= Trend::level + 3 * deviation(Trend::level, ensembles));
     // "Reached" where a drift of one deviation would have been found with 80 %.
     CHECK(reached_1 <= 0.2 + 3 * deviation(0.2, ensembles));
-    if (counts.with_test > 20) CHECK(found >= 0.8 - 3 * deviation(0.8, counts.with_test));
+    // One realization has a test mostly where its memory is underestimated, if few such have one:
+    // its statement excludes that.
+    const bool excluded = setting.realizations == 1 && 2 * counts.with_test < ensembles;
+    if (counts.with_test > 20 && !excluded)
+      CHECK(found >= 0.8 - 3 * deviation(0.8, counts.with_test));
   }
   std::fflush(stdout);
 }
