@@ -131,7 +131,7 @@ std::string basis_of_errors(const Fit& fit) {
     text << "; no errors, because the residuals are correlated for too long";
     return text.str();
   }
-  text << "; errors at 68 %, from ";
+  text << (fit.n_free > 0 ? "; errors at 68 %, from " : "; weights from ");
   if (fit.n_realizations > 0) {
     text << "the scatter of " << fit.n_realizations << " realizations";
   } else {

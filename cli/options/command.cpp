@@ -40,7 +40,7 @@ std::string require_plain_number(std::string& text) {
     const auto number = read_whole_number(digits);
     if (!number) {
       return fmt::format("{} is not a whole number{}", text,
-                         std::is_signed_v<T> ? "" : " from 0 on");
+                         !std::is_signed_v<T> && text.starts_with('-') ? " from 0 on" : "");
     }
     text = fmt::format("{}{}", is_negative ? "-" : "", *number);
     return {};

@@ -320,6 +320,7 @@ class Order(Refused):
         self.refused("analyse", "--observable", "mean_height", "gone", "steady",
                      answer="gone is neither a file nor an analysis")
         self.refused("fit", "--model", "kww,inverse_log", "--observable", "mean_height", answer="input is required")
+        self.refused("analyse", "tiny.h5", "steady", "--last", "1.5", answer="--last: 1.5 is not a whole number\n")
         self.refused("structure", "--tap", 0, -1, "tiny.h5", answer="--tap -1: neither a whole number from 0 on nor")
 
     def test_values_after_commas_blanks_and_in_turn_are_one_list(self):

@@ -387,6 +387,14 @@ class OwnLaw(WithCurve):
         tau = own["curves"][0]["fits"][0]["parameters"]["tau"]
         self.assertEqual((tau["value"], tau["identifiability"]), (10.0, "fixed"))
 
+    def test_a_law_without_a_free_parameter_has_no_errors(self):
+        self.write(self.table(), "data.csv")
+        text = self.jostle("fit", "data.csv", "--law", "Xi + d/t", "--start", "Xi=0.6,d=0.1", "--fix", "Xi=0.6", "--fix",
+                           "d=0.1").stdout
+        self.assertIn("own: all parameters fixed", text)
+        self.assertIn("points; weights from ", text)
+        self.assertNotIn("errors at 68 %", text)
+
     def test_what_is_wrong_is_named(self):
         self.write(self.table(), "data.csv")
         for arguments, message in (
