@@ -8,8 +8,6 @@
 
 namespace jostle::inline ensemble {
 
-namespace {}
-
 FoldedColumn fold(std::span<const double> column, std::uint32_t realizations) {
   assert(realizations > 0 && column.size() % realizations == 0);
   FoldedColumn folded;

@@ -6,8 +6,6 @@
 
 namespace jostle::inline ensemble {
 
-namespace {}
-
 void Moments::add(double value) {
   if (std::isnan(value)) return;
   if (count_ == 0) origin_ = value;

@@ -198,9 +198,6 @@ std::string Loop::statement(const std::string& units) const {
     return fmt::format("the branches are equal in every realization, {} realizations",
                        realizations);
   }
-  if (std::isnan(area)) {
-    return fmt::format("cannot decide with {} realizations: the area is not known", realizations);
-  }
   if (std::isnan(corrected)) {
     return finite_text(
         "cannot decide with {} realizations: the area is {:+.2g}{} in each, and without scatter it "

@@ -28,8 +28,8 @@ struct Loop {
   std::size_t realizations = 0;  // realizations with all steps of both branches
 
   static constexpr double level = significance_level;  // false alarms, all loops together
-  /// "encloses an area" or "cannot decide", with the test and what would have refuted it;
-  /// areas in these units.
+  /// "the branches differ", "the branches are equal in every realization" or "cannot decide", with
+  /// the test and what would have refuted it; areas in these units.
   std::string statement(const std::string& units = "1") const;
 };
 

@@ -38,7 +38,9 @@ std::string reasons_for_doubt(const SteadyState& state) {
   };
   const auto n = static_cast<double>(state.n_taps);
   if (state.trend.tests == 0) {
-    add("one realization, too short for its autocorrelation time, cannot test for a drift");
+    add(state.realizations == 1
+            ? "one realization, too short for its autocorrelation time, cannot test for a drift"
+            : "realizations that all change alike have no scatter to test a drift by");
   } else if (!(state.detectable() <= SteadyStateTest::largest_unseen)) {
     add(state.trend.power("only "));
   }

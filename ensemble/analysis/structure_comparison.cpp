@@ -127,7 +127,9 @@ Table table_of(const std::string& part, std::uint64_t tap, std::size_t n_points,
   add("to", std::move(lines.end), "sweep point whose mean it is taken to");
   add("from_mean", std::move(lines.from_value), "mean over the realizations of `from`");
   add("to_mean", std::move(lines.to_value), "mean over the realizations of `to`");
-  add("difference", std::move(lines.value), "mean at `to` less that at `from`");
+  add("difference", std::move(lines.value),
+      streams == Streams::matched ? "mean of `to` less `from`, of the realizations that both have"
+                                  : "mean at `to` less that at `from`");
   add("difference_error", std::move(lines.error), "standard error of the difference");
   add("difference_dof", std::move(lines.dof), "degrees of freedom of difference_error");
   add("p", std::move(lines.p), "p-value of no difference, this pair alone",

@@ -8,8 +8,6 @@
 
 namespace jostle::inline ensemble {
 
-namespace {}
-
 MotionRecords::MotionRecords(const MotionSettings& followed, std::uint32_t spheres,
                              std::uint32_t realizations)
     : settings(followed), n_spheres(spheres), n_realizations(realizations) {

@@ -7,8 +7,6 @@
 
 namespace jostle::inline ensemble {
 
-namespace {}
-
 double jackknife_error(std::span<const double> left_out) {
   Moments moments;
   for (const double estimate : left_out) {

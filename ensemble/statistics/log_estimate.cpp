@@ -11,8 +11,6 @@
 
 namespace jostle::inline ensemble {
 
-namespace {}
-
 LogEstimate no_estimate() {
   return {not_a_number, not_a_number, not_a_number, not_a_number, not_a_number, not_a_number};
 }

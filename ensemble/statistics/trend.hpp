@@ -34,7 +34,7 @@ struct Trend {
   double share = 0;            // share of the total variance in time that the line explains, 0 .. 1
   double sigma = 0;            // deviation of single taps about the line of their realization
   AutocorrelationTime memory;  // about these lines
-  std::size_t tests = 0;       // made; 0: one series, too short for its memory
+  std::size_t tests = 0;       // made; 0: one series, too short for its memory, or all alike
   double p = 1;                // p-value of all tests together
   std::string decisive;        // the test with the smallest p-value: "slope over realizations"
   double decisive_dof = 0;

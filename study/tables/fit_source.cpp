@@ -39,6 +39,12 @@ FitSource point_curve(const ResultsFile& file, std::uint32_t point, const std::s
                              source.label.empty() ? "" : source.label + ", ", point);
   source.units = {series.label().units, "taps"};
   source.curve = collect(series, range);
+  if (const double end = std::min(range.last, static_cast<double>(series.n_rows()) - 1);
+      !source.curve.t.empty() && source.curve.t.back() < std::floor(end)) {
+    source.notes.push_back(
+        fmt::format("The curve ends at tap {}: {} has no finite value at the next.",
+                    source.curve.t.back(), observable));
+  }
   if (!source.curve.t.empty()) {
     source.title += fmt::format(", {} realization{}", series.n_realizations(),
                                 series.n_realizations() == 1 ? "" : "s");

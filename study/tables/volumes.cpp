@@ -33,6 +33,7 @@ struct Sources {
   std::string control, units;
   std::vector<Source> all;
   std::vector<std::string> left_out;  // points, and why
+  std::string fault{};                // why its states are not compared
 };
 
 /// Whose volume an observable is that of; `mean`: its mean. Nothing of one that measures order.
@@ -125,12 +126,26 @@ std::vector<double> volumes_of(std::span<const double> values, const VolumeOf& v
   return volumes;
 }
 
+/// The volume of the first point is that of all.
+void require_one_size(const ResultsFile& file, const Sources& sources) {
+  const StudyPoint& first = file.study().points[sources.all.front().point];
+  for (const Source& source : sources.all) {
+    const StudyPoint& point = file.study().points[source.point];
+    if (point.n_spheres != first.n_spheres || point.container != first.container)
+      throw BadInput(fmt::format(
+          "volumes are compared in beds of one size, and {} has other spheres or sides than {}",
+          point.label, first.label));
+  }
+}
+
 Table table_of(const ResultsFile& file, const PointScenes& scenes,
                std::span<const std::uint32_t> points, const Sources& sources,
                const AnalysisRequest<VolumesSettings>& request) {
+  if (!sources.fault.empty()) throw BadInput(sources.fault);
   if (sources.all.size() < 2)
     throw BadInput("needs two strengths at least: a sweep of them, or a ramp in the protocol" +
                    of_chosen_points(file, points));
+  require_one_size(file, sources);
   const std::string& observable = request.observable;
   PointNotes copies;
   const std::vector<std::uint32_t> realizations =
@@ -230,6 +245,8 @@ void add_tables(const ResultsFile& file, const PointScenes& scenes,
     try {
       require_taps(file, point, series.n_realizations());
       const AnalysedSeries taps = last_taps(series, settings.last, 4, SteadyStateTest::fewest_taps);
+      if (!group.control.empty() && group.control != place.swept.name)
+        group.fault = fmt::format("{} and {} are not one sweep", group.control, place.swept.name);
       group.control = place.swept.name;
       group.units = place.swept.units;
       group.all.push_back({point, place.x, {taps.first_tap, taps.last_tap}});

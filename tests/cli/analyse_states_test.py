@@ -124,6 +124,40 @@ class States(Analysed):
                 for table in self.analyse(*command, last)["tables"]:
                     self.assertEqual(table["notes"].get("strengths"), expected, table["name"])
 
+    def test_a_field_of_taps_is_drawn_against_itself(self):
+        """Not against their strength, which is the same at every point."""
+        self.write(changed(TINY, realizations=2, protocol=[{"tap": {"shake": {"lambda": 0.05}}, "count": 40}],
+                           sweep={"/protocol/0/tap/shake/lateral_radius": [0, 0.05, 0.1]}))
+        self.run_scene()
+        (table,) = self.analyse("tiny.h5", "sweep", "--observable", "mean_height")["tables"]
+        self.assertEqual(table["axes"]["lateral_radius"]["values"], [0, 0.05, 0.1])
+
+    def test_points_whose_analysis_is_refused_leave_the_others(self):
+        self.write(changed(TINY, sweep={"/protocol/0/count": [4, 40, 50]}))
+        self.run_scene()
+        self.analyse("tiny.h5", "steady", "--observable", "mean_height")
+        (table,) = self.analyse("tiny.h5", "sweep", "--observable", "mean_height", "--quantity",
+                                "steady/value")["tables"]
+        self.assertEqual(table["axes"]["count"]["values"], [40, 50])
+        self.assertRegex(table["notes"]["left_out"], "^at 4: .*32 taps")
+
+    def test_a_combination_that_is_refused_leaves_the_others(self):
+        self.write(changed(TINY, sweep={"/protocol/0/count": [4, 40], "/protocol/0/tap/dilate": [0.02, 0.1]}))
+        self.run_scene()
+        short, full = self.analyse("tiny.h5", "sweep", "--observable", "mean_height", "--against",
+                                   "/protocol/0/tap/dilate", "--last", "30")["tables"]
+        self.assertEqual((short["notes"]["at"], full["notes"]["at"]), ("/protocol/0/count = 4", "/protocol/0/count = 40"))
+        self.assertIn("30", short["notes"]["refused"])
+        self.assertEqual(len(full["quantities"]["mean_height"]["values"]), 2)
+
+    def test_volumes_of_different_beds_or_taps_are_refused(self):
+        for sweep, reason in (({"/spheres": [48, 64]}, "has other spheres or sides than"),
+                              ({"/protocol/0/tap": [{"dilate": 0.1}, {"lift": 0.3}]}, "are not one sweep")):
+            self.write(changed(TAPPED, sweep=sweep))
+            self.run_scene("--force")
+            refused = self.jostle("analyse", "tiny.h5", "volumes", "--observable", "mean_height", expect=BAD_INPUT)
+            self.assertIn(reason, " ".join(refused.stderr.split()))
+
     def test_hysteresis_of_a_ramp_up_and_down(self):
         ramp = {"sqrt_from": 0.1, "sqrt_to": 0.3, "sqrt_step": 0.1}
         down = {**ramp, "sqrt_from": 0.2, "sqrt_to": 0.1}

@@ -7,6 +7,7 @@
 
 #include "engine/numbers.hpp"
 #include "ensemble/moments.hpp"
+#include "ensemble/statistics/jackknife.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -164,11 +165,11 @@ LogLogSlope SpectrumAverage::slope(const Band& band) const {
     slope.dof = std::numeric_limits<double>::infinity();
     return slope;
   }
-  Moments slopes;
-  for (std::size_t r = 0; r < slope_densities_.size(); ++r) slopes.add(spectrum_without(r).slope);
-  // Tukey 1958: leaving one out moves an estimate by 1/(n - 1) of what redrawing it would.
+  std::vector<double> slopes;
+  for (std::size_t r = 0; r < slope_densities_.size(); ++r)
+    slopes.push_back(spectrum_without(r).slope);
   slope.dof = static_cast<double>(slope_densities_.size() - 1);
-  slope.error = slopes.sigma() * std::sqrt(slope.dof);
+  slope.error = jackknife_error(slopes);
   return slope;
 }
 

@@ -82,7 +82,9 @@ void add_differences(const SweepCurve& curve, std::optional<std::size_t> referen
   const bool paired = curve.streams() == Streams::matched;
   add("from", std::move(start), swept.units, "point that the other is compared with");
   add("to", std::move(end), swept.units, "the other point");
-  add("difference", std::move(value), quantity.units, "value at `to` less that at `from`");
+  add("difference", std::move(value), quantity.units,
+      paired ? "mean of `to` less `from`, of the realizations that both have"
+             : "value at `to` less that at `from`");
   add("difference_error", std::move(error), quantity.units,
       paired ? "standard error over realizations of their differences"
              : "standard error of two independent means");

@@ -10,13 +10,15 @@
 namespace jostle::inline study {
 namespace {
 
-/// A branch with the step at which the branch before it turned.
+/// A branch with the step at which the branch before it turned: of several steps of that strength,
+/// the last belongs to the later branch already.
 std::vector<std::size_t> steps_of(const std::vector<double>& branch, std::size_t b,
-                                  const std::vector<double>& numbers) {
+                                  const std::vector<double>& numbers,
+                                  const std::vector<double>& strengths) {
   std::vector<std::size_t> steps;
   for (std::size_t i = 0; i < branch.size(); ++i) {
     const bool is_turn = b > 0 && i + 1 < branch.size() && branch[i + 1] == numbers[b] &&
-                         branch[i] == numbers[b - 1];
+                         branch[i] == numbers[b - 1] && strengths[i] != strengths[i + 1];
     if (branch[i] == numbers[b] || is_turn) steps.push_back(i);
   }
   return steps;
@@ -33,7 +35,7 @@ FigurePanel loop_panel(const TableView& table) {
       .source = table.source(observable),
       .x = {control_label(control, table.units(control))},
       .y = {axis_label(observable, table.units(observable))}};
-  const std::vector<double> branch = table.values("branch");
+  const std::vector<double> branch = table.values("branch"), strengths = table.values(control);
   std::vector<double> numbers;
   for (const double value : branch) {
     if (std::ranges::find(numbers, value) == numbers.end()) numbers.push_back(value);
@@ -45,7 +47,7 @@ FigurePanel loop_panel(const TableView& table) {
                         .drawn = Drawn::joined_points,
                         .dash = b % 3,
                         .symbol = b};
-    for (const std::size_t i : steps_of(branch, b, numbers)) {
+    for (const std::size_t i : steps_of(branch, b, numbers, strengths)) {
       series.rows.push_back({.x = table.value(control, i),
                              .y = table.value(observable, i),
                              .error = table.half_width(observable, i)});

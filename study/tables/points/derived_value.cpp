@@ -204,6 +204,13 @@ BadInput not_kept(const MadeTables& tables, std::uint32_t point, const std::stri
       of_kind.empty() ? ": make the analysis or the fit first" : "", did_you_mean(quantity, kept)));
 }
 
+/// Why a table has no results; empty where it has some.
+std::string refusal_of(const Table& table) {
+  const auto note =
+      std::ranges::find_if(table.notes, [](const auto& text) { return text.first == "refused"; });
+  return note == table.notes.end() ? "" : note->second;
+}
+
 }  // namespace
 
 std::optional<ParameterPoint> parameter_point(const Table& fit, const std::string& name) {
@@ -218,8 +225,10 @@ DerivedValue derived_value(const MadeTables& tables, std::uint32_t point,
         fmt::format("{}: expected value, or analysis/quantity or law/parameter", quantity));
   }
   const std::string kind = quantity.substr(0, slash), name = quantity.substr(slash + 1);
+  std::string refused;  // why there is none, where another point may have one
   for (const Table& table : tables.analyses) {
     if (table.name != fmt::format("{}/{}/{}", point_name(point), kind, observable)) continue;
+    if (refused.empty()) refused = refusal_of(table);
     auto found = single_value(table, name);
     if (!found) continue;
     if (kind == "steady") set_steadiness(table, *found);
@@ -227,12 +236,18 @@ DerivedValue derived_value(const MadeTables& tables, std::uint32_t point,
   }
   for (const Table& table : tables.fits) {
     if (table.name != fmt::format("{}/{}/{}", point_name(point), observable, kind)) continue;
+    if (refused.empty()) refused = refusal_of(table);
     if (auto found = parameter(table, name, "")) return *std::move(found);
   }
   for (const Table& table : tables.fits) {
     if (!table.name.starts_with(fmt::format("{}/{}/", point_name(point), observable))) continue;
     if (!is_restated_as(table, kind)) continue;
     if (auto found = parameter(table, name, restated_prefix)) return *std::move(found);
+  }
+  if (!refused.empty()) {
+    DerivedValue none;
+    none.no_value = std::move(refused);
+    return none;
   }
   throw not_kept(tables, point, observable, quantity);
 }

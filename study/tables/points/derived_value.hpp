@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/column.hpp"
+#include "engine/numbers.hpp"
 #include "ensemble/analysis/steady_state.hpp"
 #include "ensemble/analysis/table.hpp"
 #include "ensemble/statistics/student_tests.hpp"
@@ -33,11 +34,11 @@ std::optional<ParameterPoint> parameter_point(const Table& fit, const std::strin
 inline const std::string parameter_of_a_fit = "parameter of a fit";  // its label's long name
 
 struct DerivedValue {
-  double value;  // NaN without one
+  double value = not_a_number;  // without one
   ErrorOf error;
   Column label;
   std::string no_value;    // why there is none
-  bool error_is_no_basis;  // a fit's, of too few realizations
+  bool error_is_no_basis = false;  // a fit's, of too few realizations
   /// Steady states alone: the taps that they were taken from, and whether these are steady.
   std::string taps = {};
   std::optional<Verdict> steady = {};

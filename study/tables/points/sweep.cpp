@@ -19,6 +19,7 @@
 #include "study/tables/points/over_points.hpp"
 #include "study/tables/points/point_scenes.hpp"
 #include "study/tables/points/same_realizations.hpp"
+#include "study/tables/points/swept_file.hpp"
 #include "study/tables/points/swept_place.hpp"
 
 namespace jostle::inline study {
@@ -192,7 +193,10 @@ void add_notes(std::span<const Member> members, Table& table) {
   if (!strengths.empty()) table.notes.emplace_back("strengths", joined(strengths, "; "));
   if (!left_out.empty()) table.notes.emplace_back("left_out", left_out);
   std::string errors;
-  if (members.front().label.long_name == parameter_of_a_fit)
+  const auto is_parameter = [](const Member& member) {
+    return member.label.long_name == parameter_of_a_fit;
+  };
+  if (std::ranges::any_of(members, is_parameter))
     errors = "the error of a parameter is the longer side of the 68 % interval of its fit";
   if (std::ranges::any_of(members, &Member::error_is_no_basis))
     errors +=
@@ -256,35 +260,6 @@ std::string why_no_value(std::span<const Member> members,
                            members.front().place.swept.name, reasons);
 }
 
-/// A file with what is read of it once for all sweeps.
-class SweptFile {
- public:
-  SweptFile(const ResultsFile& file, const MadeTables& made)
-      : file_(file), scenes_(file), made_(made) {}
-
-  const ResultsFile& file() const { return file_; }
-  const PointScenes& scenes() const { return scenes_; }
-  /// Those just made, then those that the file keeps.
-  const MadeTables& tables() {
-    if (!kept_are_read_) {
-      kept_are_read_ = true;
-      append(made_.analyses, file_.tables("analysis"));
-      append(made_.fits, file_.tables("fits"));
-    }
-    return made_;
-  }
-
- private:
-  static void append(std::vector<Table>& tables, const std::vector<Table>& added) {
-    tables.insert(tables.end(), added.begin(), added.end());
-  }
-
-  const ResultsFile& file_;
-  PointScenes scenes_;
-  MadeTables made_;
-  bool kept_are_read_ = false;
-};
-
 /// Throws BadInput for a pointer to a value that is not swept and is the same at all points: the
 /// curve would be one point.
 void require_swept(std::span<const Member> members, const std::string& against) {
@@ -337,6 +312,22 @@ std::vector<Member> members_of(std::span<SweptFile> files,
   return members;
 }
 
+/// The curve of the points that share what does not vary with x, or why there is none.
+Table table_of(const std::string& name, std::span<Member> members,
+               const AnalysisRequest<SweepSettings>& request) {
+  try {
+    if (request.settings.quantity == "value")
+      set_values(members, request.observable, request.settings.last);
+    if (std::ranges::any_of(members, has_value))
+      return curve_table(name, members, request.settings.reference);
+    return {.name = name, .notes = {{"refused", why_no_value(members, request)}}};
+  } catch (const BadArgument&) {
+    throw;
+  } catch (const BadInput& refusal) {
+    return {.name = name, .notes = {{"refused", refusal.what()}}};
+  }
+}
+
 std::string table_name(const AnalysisRequest<SweepSettings>& request) {
   std::string quantity = request.settings.quantity;
   std::ranges::replace(quantity, '/', '_');
@@ -371,14 +362,8 @@ std::vector<Table> sweep_tables(std::span<const ResultsFile* const> files, const
         groups[member.place.fixed_values].push_back(std::move(member));
       }
       for (std::size_t i = 0; i < order.size(); ++i) {
-        if (request.settings.quantity == "value")
-          set_values(groups[order[i]], request.observable, request.settings.last);
-        const std::string of_group = order.size() == 1 ? name : fmt::format("{}_{:04}", name, i);
-        const std::vector<Member>& members = groups[order[i]];
-        Table table =
-            std::ranges::any_of(members, has_value)
-                ? curve_table(of_group, members, request.settings.reference)
-                : Table{.name = of_group, .notes = {{"refused", why_no_value(members, request)}}};
+        Table table = table_of(order.size() == 1 ? name : fmt::format("{}_{:04}", name, i),
+                               groups[order[i]], request);
         if (!order[i].empty()) table.notes.emplace_back("at", order[i]);
         tables.push_back(std::move(table));
       }

@@ -18,7 +18,15 @@ namespace jostle::inline study {
 
 namespace {
 
-/// "/protocol/0/tap/dilate" -> 0.
+/// True for a kind of tap and for the field that holds its strength: "dilate", "shake/lambda".
+bool is_strength(std::string_view of_tap) {
+  const std::size_t slash = of_tap.find('/');
+  if (slash == std::string_view::npos) return true;
+  const std::string_view field = of_tap.substr(slash + 1);
+  return field == "lambda" || field == "amplitude" || field == "acceleration";
+}
+
+/// The stage whose strength this is: "/protocol/0/tap/dilate" -> 0.
 std::optional<std::size_t> tap_line(std::string_view pointer) {
   constexpr std::string_view prefix = "/protocol/";
   if (!pointer.starts_with(prefix)) return std::nullopt;
@@ -27,7 +35,7 @@ std::optional<std::size_t> tap_line(std::string_view pointer) {
   const char* const last = pointer.data() + pointer.size();
   const auto [end, error] = std::from_chars(pointer.data(), last, line);
   const std::string_view rest(end, last);
-  const bool of_tap = rest == "/tap" || rest.starts_with("/tap/");
+  const bool of_tap = rest == "/tap" || (rest.starts_with("/tap/") && is_strength(rest.substr(5)));
   return error == std::errc{} && of_tap ? std::optional(line) : std::nullopt;
 }
 
