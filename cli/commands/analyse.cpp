@@ -93,13 +93,15 @@ int run_each(const AnalyseArguments& arguments, const TablesOf& tables_of) {
   ShownTables shown(arguments.output);
   for (const std::string& input : arguments.inputs) {
     std::vector<Table> tables;
+    DataVersion made;
     {
       const ResultsFile file = open_to_read(input, arguments.output.live);
+      made = file.data_version();
       tables = tables_of(file, chosen_points(file.study(), arguments.point));
     }
     if (arguments.inputs.size() > 1) shown.heading(input);
     shown.show(tables, input);
-    shown.keep(input, "analysis", tables, provenance);
+    shown.keep(input, "analysis", tables, provenance, made);
   }
   return shown.end(provenance);
 }
@@ -122,11 +124,13 @@ int run_sweep(const AnalyseArguments& arguments) {
                          .reference = arguments.reference};
   if (arguments.last > 0) settings.last = arguments.last;
   std::vector<Table> tables;
+  DataVersion made;
   {
     std::vector<ResultsFile> files;
     for (const std::string& input : arguments.inputs)
       files.push_back(open_to_read(input, arguments.output.live));
     require_different_runs(files);
+    made = files.front().data_version();
     std::vector<const ResultsFile*> all;
     for (const ResultsFile& file : files) all.push_back(&file);
     tables = sweep_tables(all, {}, requests(arguments, settings));
@@ -139,7 +143,7 @@ int run_sweep(const AnalyseArguments& arguments) {
   if (arguments.inputs.size() > 1) shown.heading(names);
   shown.show(tables, names);
   if (arguments.inputs.size() == 1)
-    shown.keep(arguments.inputs.front(), "analysis", tables, provenance);
+    shown.keep(arguments.inputs.front(), "analysis", tables, provenance, made);
   return shown.end(provenance);
 }
 

@@ -64,7 +64,7 @@ bool write_reports(const CostArguments& arguments, const CostStudy& study, const
     for (const Table& table : tables) csv += table_csv(table);
     write_text(arguments.csv, csv);
   }
-  return keep_tables(output, "analysis", tables, provenance, arguments.patience);
+  return keep_tables(output, "analysis", tables, provenance, arguments.patience, {});
 }
 
 RunSettings settings_of(const CostArguments& arguments, const std::string& output, int threads,

@@ -129,7 +129,8 @@ FitSource measured_source(const FitArguments& arguments) {
   return source;
 }
 
-std::vector<FitSource> read_sources(const FitArguments& arguments) {
+/// `made`: set for a results file.
+std::vector<FitSource> read_sources(const FitArguments& arguments, DataVersion& made) {
   const std::string& input = arguments.input;
   if (!is_results_file(input)) {
     if (input.ends_with(".h5") || std::filesystem::is_directory(input))
@@ -147,6 +148,7 @@ std::vector<FitSource> read_sources(const FitArguments& arguments) {
   // Tap 0 is the start: a law of taps begins with the first.
   const FitRange range = read_range("--range", arguments.range.empty() ? "1:" : arguments.range);
   const ResultsFile file = open_to_read(arguments.input, arguments.live);
+  made = file.data_version();
   return results_curves(file, chosen_points(file.study(), arguments.point), arguments.observable,
                         range);
 }
@@ -193,7 +195,8 @@ int run_fits(const FitArguments& arguments) {
   require_text_output("--csv", arguments.csv, std::span(&arguments.input, 1), arguments.force);
   require_measured_output(arguments.measured, arguments.input, arguments.force);
   const auto models = chosen_models(arguments);
-  const std::vector<FitSource> sources = read_sources(arguments);
+  DataVersion made;
+  const std::vector<FitSource> sources = read_sources(arguments, made);
   if (!arguments.csv.empty() && sources.size() > 1) {
     throw BadInput("--csv holds one curve: choose it with --sweep-point");
   }
@@ -234,8 +237,8 @@ int run_fits(const FitArguments& arguments) {
     if (!arguments.json) print(written);
   }
   const bool to_store = !tables.empty() && !arguments.not_stored && arguments.live == Live::no;
-  const bool lost =
-      to_store && !keep_tables(arguments.input, "fits", tables, provenance, arguments.patience);
+  const bool lost = to_store && !keep_tables(arguments.input, "fits", tables, provenance,
+                                             arguments.patience, made);
   if (!any) throw BadInput(refusals);
   if (!refusals.empty()) print_to_standard_error(fmt::format("jostle: {}\n", refusals));
   return lost ? exit_io_error : exit_ok;

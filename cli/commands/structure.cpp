@@ -103,8 +103,10 @@ int measure_structure(const StructureArguments& arguments) {
         fmt::format("{}: --live applies only to results files", arguments.inputs.front()));
   require_different(arguments.inputs);
   std::vector<Table> tables;
+  DataVersion made;
   if (results) {
     const ResultsFile file = open_to_read(arguments.inputs.front(), arguments.output.live);
+    made = file.data_version();
     tables = structure_of(file, chosen_points(file.study(), arguments.point),
                           wanted(arguments, structure_asked_for(file)), taps, threads);
   } else {
@@ -115,7 +117,7 @@ int measure_structure(const StructureArguments& arguments) {
   }
   ShownTables shown(arguments.output);
   shown.show(tables, "");
-  if (results) shown.keep(arguments.inputs.front(), "structure", tables, provenance);
+  if (results) shown.keep(arguments.inputs.front(), "structure", tables, provenance, made);
   return shown.end(provenance);
 }
 

@@ -22,12 +22,13 @@
 namespace jostle::inline cli {
 
 bool keep_tables(const std::string& path, const std::string& group, std::span<const Table> tables,
-                 const Provenance& provenance, const Patience& patience) {
+                 const Provenance& provenance, const Patience& patience,
+                 const std::optional<DataVersion>& made) {
   try {
     const bool any_made = std::ranges::any_of(tables, is_made);
     const std::vector<std::string> left =
         store_tables(path, group, tables, provenance, patience,
-                     any_made ? StoredResults::replaced : StoredResults::left);
+                     any_made ? StoredResults::replaced : StoredResults::left, made);
     for (const std::string& name : left)
       print_to_standard_error(
           fmt::format("jostle: /{}/{} is kept: this request gave no result\n", group, name));

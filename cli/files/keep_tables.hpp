@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -7,16 +8,18 @@
 #include "ensemble/analysis/table.hpp"
 #include "results/content/study.hpp"
 #include "results/export/export.hpp"
+#include "results/file/results_file.hpp"
 #include "results/locks/patience.hpp"
 
 namespace jostle::inline cli {
 
-/// Stores the tables of one request in `group` of a results file, in place of tables of the same
-/// names. If no table of the request has results, stored tables with results stay, and standard
-/// error names them. Returns false where nothing could be stored: standard error gives the reason.
+/// Stores the tables of one request in `group` of a results file, if it still holds the data of
+/// which they were `made` (empty: whatever it holds), in place of tables of the same names. If no
+/// table of the request has results, stored tables with results stay, and standard error names
+/// them. Returns false where nothing could be stored: standard error gives the reason.
 [[nodiscard]] bool keep_tables(const std::string& path, const std::string& group,
                                std::span<const Table> tables, const Provenance& provenance,
-                               const Patience& patience);
+                               const Patience& patience, const std::optional<DataVersion>& made);
 
 /// Puts the text into a file, whole or not at all, or into a pipe or a device. Throws ResultsError.
 void write_text(const std::string& path, const std::string& text);

@@ -57,8 +57,9 @@ void ShownTables::show(std::span<const Table> tables, const std::string& input) 
 }
 
 void ShownTables::keep(const std::string& path, const std::string& group,
-                       std::span<const Table> tables, const Provenance& provenance) {
-  if (output_.stored() && !keep_tables(path, group, tables, provenance, output_.patience))
+                       std::span<const Table> tables, const Provenance& provenance,
+                       const DataVersion& made) {
+  if (output_.stored() && !keep_tables(path, group, tables, provenance, output_.patience, made))
     all_stored_ = false;
 }
 

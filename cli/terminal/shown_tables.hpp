@@ -42,7 +42,7 @@ class ShownTables {
   void show(std::span<const Table> tables, const std::string& input);
   /// Stores tables that were shown in the results file they were made of, where that is asked for.
   void keep(const std::string& path, const std::string& group, std::span<const Table> tables,
-            const Provenance& provenance);
+            const Provenance& provenance, const DataVersion& made);
   /// Returns the exit code: bad input where no table was made, broken where some are not stored.
   int end(const Provenance& provenance) const;
 

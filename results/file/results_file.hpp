@@ -65,6 +65,13 @@ enum class Verify { whole_file, end_of_file };
 
 enum class Realizations { all, of_its_share };
 
+/// Which data a file holds: another after a run has added to it, or was put in its place.
+struct DataVersion {
+  std::string run_id;
+  std::size_t processes = 0;  // that have worked on it
+  bool operator==(const DataVersion&) const = default;
+};
+
 struct RealizationSummary {
   RealizationId id;
   RealizationStatus status = RealizationStatus::missing;
@@ -96,6 +103,7 @@ class ResultsFile {
   const std::vector<Provenance>& provenance() const;  // one per process that worked on it
   /// Marks this run's parts; random.
   const std::string& run_id() const;
+  DataVersion data_version() const { return {run_id(), provenance().size()}; }
 
   /// Every (point, realization), points outermost; or those of its share alone.
   std::vector<RealizationSummary> realizations(Realizations selection = Realizations::all) const;

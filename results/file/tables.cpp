@@ -113,18 +113,18 @@ void write_table(hid_t parent, const Table& table, const Provenance& provenance)
   }
 }
 
+std::string text_attribute_or_empty(hid_t object, const char* name) {
+  return checked(H5Aexists(object, name)) > 0 ? read_text_attribute(object, name) : "";
+}
+
 /// How a table was made.
 Provenance origin_of(hid_t table) {
   Provenance origin;
-  origin.version = read_text_attribute(table, "version");
-  origin.git_revision = read_text_attribute(table, "git_revision");
-  origin.command_line = read_text_attribute(table, "command_line");
-  origin.started = read_text_attribute(table, "made");
+  origin.version = text_attribute_or_empty(table, "version");
+  origin.git_revision = text_attribute_or_empty(table, "git_revision");
+  origin.command_line = text_attribute_or_empty(table, "command_line");
+  origin.started = text_attribute_or_empty(table, "made");
   return origin;
-}
-
-std::string text_attribute_or_empty(hid_t object, const char* name) {
-  return checked(H5Aexists(object, name)) > 0 ? read_text_attribute(object, name) : "";
 }
 
 Quantity read_quantity(hid_t group, const std::string& name, const std::vector<Member>& members) {
@@ -218,14 +218,16 @@ std::vector<std::string> derived_tables(hid_t file, const Test& passes) {
 
 std::vector<std::string> store_tables(const std::string& path, const std::string& group,
                                       std::span<const Table> tables, const Provenance& provenance,
-                                      const Patience& patience, StoredResults stored) {
+                                      const Patience& patience, StoredResults stored,
+                                      const std::optional<DataVersion>& made) {
   const TableGroup table_group{group, {tables.begin(), tables.end()}};
-  return store_tables(path, std::span(&table_group, 1), provenance, patience, stored);
+  return store_tables(path, std::span(&table_group, 1), provenance, patience, stored, made);
 }
 
 std::vector<std::string> store_tables(const std::string& named, std::span<const TableGroup> groups,
                                       const Provenance& provenance, const Patience& patience,
-                                      StoredResults stored) {
+                                      StoredResults stored,
+                                      const std::optional<DataVersion>& made) {
   std::vector<std::string> names;
   for (const TableGroup& group : groups) {
     names.push_back(group.name);
@@ -239,6 +241,8 @@ std::vector<std::string> store_tables(const std::string& named, std::span<const 
   remove_stale_temporaries(path);
   TemporaryFile temporary(path);
   copy_intact(path, temporary);
+  if (made && ResultsFile(path, Verify::end_of_file).data_version() != *made)
+    throw ResultsError(path, "its data have changed since they were read; run the command again");
   std::vector<std::string> left;
   std::size_t n_written = 0;
   naming_file(temporary.name(), [&] {

@@ -78,7 +78,8 @@ void make_tables(const ResultsFile& file, const Scene& scene, int threads, Table
 void store(const ResultsFile& file, const std::vector<TableGroup>& groups, int threads,
            const Patience& patience) {
   if (groups.empty()) return;
-  store_tables(file.path(), groups, provenance_of_this_run(fmt::to_string(threads)), patience);
+  store_tables(file.path(), groups, provenance_of_this_run(fmt::to_string(threads)), patience,
+               StoredResults::replaced, file.data_version());
 }
 
 }  // namespace

@@ -119,6 +119,23 @@ class Waiting(Case):
             self.assertEqual(process.returncode, OK, err)
         self.assertGreater(len(self.tables()), 3)
 
+    def test_tables_of_other_data_are_not_stored(self):
+        """Those of the data before a run that the command has waited for."""
+        self.write(changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 50}], snapshots={"taps": [0, 40]}))
+        (self.folder / "longer.h5").write_bytes((self.folder / "copy.h5").read_bytes())
+        self.jostle("run", "scene.json", "--resume", "--no-progress", "-o", "longer.h5")
+        for command in STORING:
+            (self.folder / "tiny.h5").write_bytes((self.folder / "copy.h5").read_bytes())
+            held = self.hold()
+            process = self.popen(*command, "--wait", "10m")
+            self.assertIn("waiting up to 600 s", process.stderr.readline())
+            (self.folder / "tiny.h5").write_bytes((self.folder / "longer.h5").read_bytes())
+            self.release(held)
+            _, err = process.communicate(timeout=600)
+            self.assertEqual(process.returncode, BROKEN, err)
+            self.assertIn("its data have changed since they were read; run the command again", err)
+            self.assertEqual(self.tables(), [])
+
     def test_a_file_that_cannot_be_changed(self):
         (self.folder / "tiny.h5").chmod(0o444)
         for command in STORING:
