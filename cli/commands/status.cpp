@@ -26,14 +26,14 @@ bool all_done(const ShardsStatus& study) {
   return study.indices(ShardState::done).size() == study.shards.size();
 }
 
-/// The next commands: these are never folded.
-std::string next_text(const ShardsStatus& study, const StatusArguments& arguments,
+/// The next commands: these are never folded. `inputs`: what has the shards of this study alone.
+std::string next_text(const ShardsStatus& study, const std::vector<std::string>& inputs,
                       const std::vector<std::string>& redo) {
   constexpr std::size_t most_commands = 20;
   std::string text;
   if (all_done(study) && study.shards.size() > 1) {
     std::vector<std::string> words{command_line().front(), "merge"};
-    std::ranges::transform(arguments.files, std::back_inserter(words), operand);
+    std::ranges::transform(inputs, std::back_inserter(words), operand);
     words.insert(words.end(), {"-o", study.scene + ".h5"});
     return fmt::format("next:\n  {}\n", shell_words(words));
   }
@@ -55,7 +55,9 @@ int show_status(const StatusArguments& arguments) {
       studies.push_back(status_json(study, redo));
     } else {
       print_wrapped(status_text(study));
-      print(next_text(study, arguments, redo));
+      std::vector<std::string> paths;
+      for (const ShardStatus& shard : study.shards) paths.push_back(shard.path);
+      print(next_text(study, overview.studies.size() == 1 ? arguments.files : paths, redo));
     }
   }
   for (const BadFile& file : overview.bad_files) {

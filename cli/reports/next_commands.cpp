@@ -117,7 +117,8 @@ namespace {
 
 // Options of `run` that a resume takes over; --resume, --shard and the output are set anew, and
 // --force must not come back.
-constexpr std::string_view kept_flags[] = {"--retry-failed", "--wide", "--quiet", "--no-progress"};
+constexpr std::string_view kept_flags[] = {"--retry-failed", "--wide", "--verbose", "--quiet",
+                                           "--no-progress"};
 constexpr std::string_view flags_set_anew[] = {"--resume", "--force"};
 constexpr std::string_view kept_values[] = {"--threads", "--time-limit", "--checkpoint-every",
                                             "--wait"};
@@ -183,7 +184,8 @@ std::optional<RunWords> run_words(const std::vector<std::string>& words) {
   bool operands_only = false;
   for (std::size_t i = 2; i < words.size(); ++i) {
     const std::string& word = words[i];
-    const std::string name = word.substr(0, word.find('='));
+    const bool attached = word.starts_with("-o") && word.size() > 2;  // -oFILE
+    const std::string name = attached ? "-o" : word.substr(0, word.find('='));
     const bool has_value = is_one_of(name, kept_values) || is_one_of(name, values_set_anew);
     if (operands_only || !word.starts_with('-')) {
       if (!found.scene.empty()) return std::nullopt;

@@ -19,7 +19,7 @@ except ImportError as error:
 
 def ensemble_frame(results: ResultsFile, points: Sequence[Point], observables: Sequence[str]) -> pandas.DataFrame:
     """One row per sweep point and tap that it has come to; all columns where none is named."""
-    chosen = observables or results.observables
+    chosen = list(dict.fromkeys(observables or results.observables))
     unknown = [name for name in chosen if name not in results.observables]
     if unknown:
         raise NotThere(f"{results.path} has no {unknown[0]!r}; it has {', '.join(results.observables)}")

@@ -107,9 +107,11 @@ class Point:
 
     @property
     def scene(self) -> dict[str, Any]:
-        """The resolved scene with the values of this point in their places, without the sweep."""
+        """The resolved scene with the values of this point in their places, without the sweep and what needs one."""
         scene = copy.deepcopy(self._results.scene)
-        scene.pop("sweep", None)
+        for key in ("sweep", "point_labels"):
+            scene.pop(key, None)
+        scene.get("analyse", {}).pop("sweep", None)
         for pointer, value in self.values.items():
             *above, last = [part.replace("~1", "/").replace("~0", "~")
                             for part in pointer.split("/")[1:]]
@@ -117,6 +119,9 @@ class Point:
             for part in above:
                 place = place[int(part) if isinstance(place, list) else part]
             place[int(last) if isinstance(place, list) else last] = copy.deepcopy(value)
+        if "discrete_element" in scene.get("engine", {}):  # grains come to rest by themselves
+            for key in ("relax", "relax_start"):
+                scene.pop(key, None)
         return scene
 
     # Taps and realizations.
@@ -302,9 +307,7 @@ class Point:
     def diameters(self, realization: int = 0) -> np.ndarray:
         """[sphere]: the diameters of a realization's spheres; 1 of equal spheres. NaN of a realization that draws
         its own and has not begun, or has failed."""
-        realization = whole_number(realization, "realization")
-        if not 0 <= realization < self.n_realizations:
-            raise NotThere(f"{self._results.path}: no realization {realization}: there are {self.n_realizations}")
+        realization = self._checked(realization)
         if self._mixture is None:
             return np.ones(self.n_spheres)
         if "diameter" in self._mixture and self._mixture["diameter"].ndim == 1:
@@ -331,12 +334,19 @@ class Point:
 
     def box(self, realization: int = 0) -> Box:
         """The box of a realization's packings."""
+        realization = self._checked(realization)
         try:
             box = self._particles(realization)["box"]
         except NotThere:
             return self._planned_box()
         x, y, z = texts(box.attrs["boundary"])
         return Box((x, y, z), box["edges"][()])
+
+    def _checked(self, realization: int) -> int:
+        realization = whole_number(realization, "realization")
+        if not 0 <= realization < self.n_realizations:
+            raise NotThere(f"{self._results.path}: no realization {realization}: there are {self.n_realizations}")
+        return realization
 
     def _planned_box(self) -> Box:
         attributes = self._file[f"sweep/{self._name}"].attrs

@@ -38,7 +38,7 @@ def check(scene: Scene | Path, *, pilot: bool = False, threads: int | None = Non
     try:
         with scene_file(scene) as file:
             done = call(["check", *([] if pilot else ["--no-pilot"]),
-                         *([f"--threads={threads}"] if threads else [])], [file], program=program, folded=False)
+                         *([] if threads is None else [f"--threads={threads}"])], [file], program=program, folded=False)
     except ProgramMissing as missing:
         return _check_by_schema(scene, missing)
     try:

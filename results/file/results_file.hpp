@@ -65,10 +65,10 @@ enum class Verify { whole_file, end_of_file };
 
 enum class Realizations { all, of_its_share };
 
-/// Which data a file holds: another after a run has added to it, or was put in its place.
+/// The data of a file: a run that adds to it, or another file in its place, has another version.
 struct DataVersion {
   std::string run_id;
-  std::size_t processes = 0;  // that have worked on it
+  std::size_t processes = 0;  // number that has worked on it
   bool operator==(const DataVersion&) const = default;
 };
 

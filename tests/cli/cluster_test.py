@@ -260,6 +260,21 @@ class Status(Case):
         self.assertEqual(self.states(), {1: "done", 2: "done"})
         self.assertIn("merge shards -o tiny.h5", self.jostle("status", "shards").stdout)
 
+    def test_a_redone_run_keeps_its_scene_and_options_and_a_merge_its_study(self):
+        self.write(SLOW)
+        self.jostle("run", "scene.json", "--shard", "1/2", "-oshards/1.h5", "--verbose", "--threads", 2,
+                    environment={"JOSTLE_TIME_LIMIT": "0.1"}, expect=STOPPED)
+        redo = self.jostle("status", "shards/1.h5").stdout
+        self.assertRegex(redo, "run scene.json --verbose --threads=2 --resume --shard 1/2 -o shards/1.h5")
+        (self.folder / "both").mkdir()
+        for name, tiny in (("low", TINY), ("high", changed(TINY, seed=5))):
+            self.write(changed(tiny, name=name))
+            for i in (1, 2):
+                self.jostle("run", "scene.json", "--shard", f"{i}/2", "-o", f"both/{name}{i}.h5", "--quiet")
+        text = " ".join(self.jostle("status", "both").stdout.split())
+        for name in ("low", "high"):
+            self.assertIn(f"merge both/{name}1.h5 both/{name}2.h5 -o {name}.h5", text)
+
     def test_what_is_missing_is_computed_by_the_commands_alone(self):
         self.shard(2)
         self.shard(4)

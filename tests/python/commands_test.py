@@ -360,6 +360,8 @@ class Check(Case):
         self.assertEqual(jostle.check(described, program=PROGRAM).resolved["description"],
                          described["description"])
         self.assertEqual(checked.warnings, [])
+        with self.assertRaisesRegex(jostle.JostleError, "threads"):
+            jostle.check(TINY, threads=0)
         self.assertIn("4 sweep points x 3 realizations", checked.text)
         warned = jostle.check(changed(SHORT, snapshots=None, protocol=[{"tap": {"dilate": 5}, "count": 1}]))
         self.assertTrue(warned.warnings)

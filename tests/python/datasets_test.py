@@ -124,6 +124,8 @@ class Ensemble(Case):
         self.assertEqual(np.isnan(ensemble["bottom_fraction_mean"].values).all(axis=1).tolist(),
                          [True, False])
         self.assertEqual(len(results.to_pandas()), 6)
+        self.assertEqual(len(results.to_pandas("mean_height", "mean_height").columns),
+                         len(results.to_pandas("mean_height").columns))
 
 
 class Grains(Case):

@@ -51,6 +51,9 @@ class Read(Case):
                                    values.std(axis=1, ddof=1) / 3 ** 0.5, rtol=1e-9)
 
     def test_positions_snapshots_and_box(self):
+        for realization in (-1, 999):
+            with self.assertRaisesRegex(jostle.NotThere, f"no realization {realization}: there are "):
+                self.results.points[0].box(realization)
         group = self.raw["particles/point_0003_realization_00002"]
         self.assertEqual(self.results.points[3].position_taps(2).tolist(), [0, 10, 40])
         for frame, tap in enumerate((0, 10, 40)):
@@ -137,6 +140,9 @@ class Read(Case):
         scene = self.results.points[2].scene
         self.assertEqual((scene["protocol"][0]["tap"]["dilate"], scene["container"]["width"]), (0.1, 4))
         self.assertNotIn("sweep", scene)
+        labelled = changed(TINY, sweep={"/protocol/0/tap/dilate": [0.02, 0.1]}, point_labels=["weak", "strong"],
+                           analyse={"sweep": [{"observable": "mean_height"}]})
+        self.assertEqual(jostle.check(self.open(made(labelled)).points[1].scene).warnings, [])
         self.assertEqual(self.results.scene["container"]["width"], 4)  # its own is untouched
         (process,) = self.results.provenance
         self.assertEqual(process["version"], jostle.__version__)
