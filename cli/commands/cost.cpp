@@ -69,8 +69,11 @@ bool write_reports(const CostArguments& arguments, const CostStudy& study, const
 
 RunSettings settings_of(const CostArguments& arguments, const std::string& output, int threads,
                         const StopRequest& stop) {
-  RunSettings settings{
-      .output = output, .patience = arguments.patience, .threads = threads, .stop = &stop.flag()};
+  RunSettings settings{.output = output,
+                       .take_over = arguments.force,
+                       .patience = arguments.patience,
+                       .threads = threads,
+                       .stop = &stop.flag()};
   if (arguments.resume) {
     settings.existing = Existing::resume;
   } else if (arguments.force) {

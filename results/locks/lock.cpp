@@ -109,8 +109,8 @@ struct Held {
         waited.count() > 0 ? finite_text(", still after {:.3g} s", waited.count()) : "";
     if (on_other_host)
       return {path,
-              fmt::format("{} may still be working on this file{}; if it is not, take the file "
-                          "over",
+              fmt::format("{} may still be working on this file{}; if it is not, resume its run, "
+                          "which takes the file over",
                           process, still),
               ResultsError::Force::helps};
     return {path, fmt::format("{} is {} this file{}; wait for it, or stop it", process,

@@ -5,7 +5,7 @@ import unittest
 
 import h5py
 
-from support import BAD_INPUT, FAILED, OK, TINY, UNFOLDED, Case, changed
+from support import BAD_INPUT, BROKEN, FAILED, OK, TINY, UNFOLDED, Case, changed
 
 SCENE = changed(TINY, protocol=[{"tap": {"dilate": 0.05}, "count": 40}],
                 relax={"polar": {}, "stop": {"mean_height": {"eta": 1e-4, "every_sweeps": 20}}})
@@ -99,6 +99,10 @@ class Cost(Case):
         again = ("--replicates", "4", "--taps", "3", "--csv", "b.csv", "--threads", "2", "-o", "b.h5",
                  "--resume")
         self.assertIn("b.csv exists and is kept", self.cost(*again, expect=BAD_INPUT).stderr)
+        # The lock of another host, which --force takes over: the pilots stay.
+        (self.folder / "b.h5.lock").write_text("elsewhere 1 1\n")
+        self.assertIn("resume its run, which takes the file over (--force)",
+                      self.cost(*again[:4], *again[-5:], expect=BROKEN).stderr)
         self.cost(*again, "--force")
         self.assertEqual(self.rows("a.csv"), self.rows("b.csv"))
         self.assertEqual(self.digest("tiny-cost.h5"), self.digest("b.h5"))
