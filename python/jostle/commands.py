@@ -204,8 +204,8 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
         fix: Mapping[str, float] | None = None, realizations: bool = False, gaps: str | None = None,
         independent: bool = False, figures: Path | None = None, page: Path | None = None,
         resample: str | None = None,
-        resamples: int | None = None, seed: int | None = None, store: bool = True, live: bool = False,
-        wait: str | None = None, program: Path | None = None) -> list[FittedCurve]:
+        resamples: int | None = None, seed: int | None = None, store: bool = True, force: bool = False,
+        live: bool = False, wait: str | None = None, program: Path | None = None) -> list[FittedCurve]:
     """Fits laws to the mean curve of an observable at every sweep point, or to a measured curve (CSV).
 
     Kept in the file under /fits unless store=False; a Results that is open shows them once it is opened
@@ -215,7 +215,7 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
     `start` and stay between `bounds`, (lower, upper), None for no bound; it is called law_name ("own").
     A measured curve: realizations=True takes every column but t for a realization; gaps is "use-others"
     (default) or "drop-row"; independent=True looks for no memory in the residuals; figures is a
-    folder and page an HTML file to draw it into.
+    folder and page an HTML file to draw it into, which force=True replaces.
     """
     named = [f"--{option}={name}={float(value)!r}" for option, values in (("fix", fix), ("start", start))
              for name, value in (values or {}).items()]
@@ -226,8 +226,9 @@ def fit(results: Results | Path, observable: str | None = None, *, model: str | 
                  *_options(observable=observable, model=model, law=law, law_name=law_name,
                            sweep_point=sweep_point_text(sweep_point), range=range, realizations=realizations,
                            gaps=gaps, independent=independent, figures=figures, page=page, resample=resample,
-                           resamples=resamples, seed=seed, no_store=not store, wait=wait,
-                           live=_live(results, live))], _paths(results), program=program, accept=(OK, BROKEN))
+                           resamples=resamples, seed=seed, no_store=not store, force=force,
+                           wait=wait, live=_live(results, live))], _paths(results), program=program,
+                accept=(OK, BROKEN))
     return fitted_curves(_report(done))
 
 

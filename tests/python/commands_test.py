@@ -269,6 +269,10 @@ class Derive(Case):
             f"{t},{0.62 - 0.05 * math.exp(-(t / 40) ** 0.5)!r}\n" for t in range(1, 200)))
         (curve,) = jostle.fit("curve.csv", model="kww")
         self.assertAlmostEqual(curve["kww"].parameters["tau"].value, 40, places=4)
+        jostle.fit("curve.csv", model="kww", page="curve.html")
+        with self.assertRaisesRegex(jostle.JostleError, "curve.html exists and is kept.*force=True"):
+            jostle.fit("curve.csv", model="kww", page="curve.html")
+        jostle.fit("curve.csv", model="kww", page="curve.html", force=True)
 
     def test_a_refusal_is_told_in_words(self):
         with self.assertRaises(jostle.ProgramError) as raised:
