@@ -4,6 +4,7 @@ import numpy as np
 from contrasts import misfit_of_inverse_log
 from contrasts_of_campaign import CAMPAIGN, DRAWN, LAST, STRENGTHS, in_pairs, point_at
 from distributions import distribution, kept_taps, numbers, series, steady
+from reduce import REDUCED, read_table
 from verdicts import Estimate
 
 FIRST = 2.5  # diameters: eq. 7 describes the bed from 5 R
@@ -12,19 +13,11 @@ FIRST = 2.5  # diameters: eq. 7 describes the bed from 5 R
 def full_growth(strength):
     """Phi_b, the mean of taps 3001 to 4000 less tap 1."""
     point = point_at(strength)
-    return [Estimate.of(steady(CAMPAIGN, point, "bottom_fraction") - series(CAMPAIGN, point, "bottom_fraction", 1))]
+    return Estimate.of(steady(CAMPAIGN, point, "bottom_fraction") - series(CAMPAIGN, point, "bottom_fraction", 1))
 
 
-def full_growth_05():
-    return full_growth(0.0025)
-
-
-def full_growth_10():
-    return full_growth(0.01)
-
-
-def full_growth_32():
-    return full_growth(0.1)
+def full_growths():
+    return [full_growth(strength) for strength in (0.0025, 0.01, 0.1)]
 
 
 def full_early_growth():
@@ -47,6 +40,23 @@ def growth(strength, observable):
     point = point_at(strength)
     taps = [tap for tap in kept_taps(CAMPAIGN, point) if tap >= 1]
     return np.array(taps, float), np.array([series(CAMPAIGN, point, observable, tap) for tap in taps])
+
+
+def limits(strength, parameter):
+    """The 95 % interval of a parameter of eq. 3 that the program fits to Phi_b (fits_of_growth.py)."""
+    ends = next(row[2:] for row in read_table(REDUCED / CAMPAIGN / "fits.csv")[1:]
+                if row[:2] == [f"{strength:g}", parameter])
+    return tuple(float(end) if end else none for end, none in zip(ends, (-np.inf, np.inf)))
+
+
+def asymptote_at_weak_taps():
+    return limits(0.000625, "X_inf")
+
+
+def rise_of_tau():
+    """tau at eps^(1/2) = 0.025 over that at 0.1: the ends of both intervals."""
+    (low, high), (least, most) = limits(0.000625, "tau"), limits(0.01, "tau")
+    return low / most, high / least
 
 
 def eq3_fits():

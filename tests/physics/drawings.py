@@ -6,7 +6,7 @@ import numpy as np
 
 from pictures import COLOURS, Picture, curves_of
 from reduce import REDUCED, read_table
-from special_drawings import (PRINTED_LABEL, draw_ageing, draw_crystals, draw_densities, draw_free_volumes,
+from special_drawings import (PRINTED_LABEL, draw_ageing, draw_crystals, draw_densities, draw_free_volumes, draw_growth,
                               draw_increases, draw_layers, draw_map, draw_neighbours, draw_pores, draw_pours,
                               draw_snapshots, draw_spectra, draw_steady_crystals, draw_surface, draw_tails,
                               draw_transverse, draw_vertical, draw_void_probability)
@@ -21,8 +21,6 @@ TAPS, STRENGTH, PHI, MARKS = "taps", "eps^(1/2)", "packing fraction", "osD^v<>p"
 
 # figure: its panels, each a list of (run, table, picture).
 PANELS = {
-    "pb2": [[("pb2", 1, Picture(TAPS, "Phi_b", across=True, log="x"))],
-            [("pb2", 1, Picture(TAPS, "Phi_b", across=True))]],
     "pb4": [[("pb4-bell", 1, Picture(STRENGTH, "Phi_c", columns="3001")),
              ("pb4-hysteresis", 1, Picture(STRENGTH, "Phi_c"))]],
     "pb-moves": [[("pb-moves", 1, Picture("d_max, diameters", "10^4 gain of Phi_c", across=True, log="x"))]],
@@ -81,7 +79,7 @@ def save(figure, target):
 
 
 # figure: how many panels, and what draws them.
-SPECIAL = {"pb3": (2, draw_spectra), "pb5": (2, draw_ageing), "pb6": (1, draw_vertical),
+SPECIAL = {"pb2": (2, draw_growth), "pb3": (2, draw_spectra), "pb5": (2, draw_ageing), "pb6": (1, draw_vertical),
            "pb7": (1, draw_transverse), "pb8": (2, draw_increases),
            "pb9": (1, draw_void_probability), "pb10": (3, draw_pores), "dr1": (2, draw_snapshots),
            "dr5": (2, draw_crystals), "dr6": (4, draw_layers), "dr7": (1, draw_pours), "dr8": (1, draw_neighbours),

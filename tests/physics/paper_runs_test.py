@@ -17,8 +17,10 @@ import h5py
 import numpy as np
 
 import beds
+import fits_of_growth
 import paper_runs
 from packings import neighbours_of_all, peaks_of_layers, pores_of_four_centres
+from reduce import read_table
 
 JOSTLE = os.environ["JOSTLE"]
 SCENE = {"name": "tiny", "description": ["two strengths"], "seed": 7, "realizations": 3,
@@ -213,6 +215,16 @@ def packings_are_measured():
     check(36 * 5 <= found <= 36 * 8, "pores", found)
 
 
+def fits_are_those_of_the_beds():
+    """fits.csv is made from the series beside it, to the digits that other libraries' sums may change."""
+    stored, made = read_table(fits_of_growth.FITS)[1:], fits_of_growth.fitted(JOSTLE)
+    check([row[:2] for row in stored] == [list(row[:2]) for row in made], "parameters")
+    for row, fresh in zip(stored, made):
+        for end, again in zip(row[2:], fresh[2:]):
+            check(bool(end) == bool(again), row, fresh)
+            check(not end or abs(float(again) / float(end) - 1) < 0.02, row, fresh)
+
+
 def every_run_of_the_table_has_its_scene():
     runs = paper_runs.table_of()
     check(len({run.name for run in runs}) == len(runs), "names")
@@ -224,6 +236,7 @@ def every_run_of_the_table_has_its_scene():
 def main():
     a_run_leaves_the_processors_to_others()
     packings_are_measured()
+    fits_are_those_of_the_beds()
     every_run_of_the_table_has_its_scene()
     # Yielding to other tests, these beds would wait until those end.
     with tempfile.TemporaryDirectory() as folder, mock.patch.object(paper_runs, "yield_processors"):

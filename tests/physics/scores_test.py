@@ -139,13 +139,13 @@ def laws_that_do_not_fit_are_found(random):
 
 
 def levels_of_beds_are_no_misfit(random):
-    """misfit_of_means(): beds of different levels that follow one law fit, and a step of a margin and a half does not."""
+    """misfit_of_means(): beds of different levels that follow one law fit, and a step of six margins does not."""
     taps = np.unique(np.geomspace(1, 4000, 25).round())
     law = 0.61 - 0.035 / (1 + 0.25 * np.log1p(taps / 2))
     beds = law[:, None] + random.normal(0, 0.02, 5) + random.normal(0, 0.001, (len(taps), 5))
     claim = Claim("", "", "within", margin=0.005)
     check(within(claim, growth.misfit_of_means(taps, beds))[0] == REPRODUCED, "a law with levels")
-    step = np.where(taps > 300, 0.015, 0.0)[:, None]
+    step = np.where(taps > 300, 0.03, 0.0)[:, None]
     check(within(claim, growth.misfit_of_means(taps, beds + step))[0] == NOT, "a step")
 
 

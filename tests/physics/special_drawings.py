@@ -3,8 +3,10 @@ import numpy as np
 from matplotlib.collections import EllipseCollection
 from scipy import optimize, stats
 
+from contrasts import misfit_of_inverse_log
 from contrasts_of_beds import CRYSTAL, FRICTIONS, LIFTS, ROUGH, from_crystal, whole_bed
 from contrasts_of_campaign import CAMPAIGN, DRAWN, LAST, STRENGTHS, WIDTH, numbers_at, point_at
+from contrasts_of_growth import growth
 from distributions import beds_of_point, distribution, label, numbers, series, spectrum, steady
 from pictures import COLOURS, value_of
 from reduce import REDUCED, read_table
@@ -90,6 +92,21 @@ def draw_layers(axes):
             panel.axvline(0.5 + layer * LAYER, color="#bbbbbb", linewidth=.5)
         panel.plot(z, n, color=COLOURS[0], linewidth=.7)
         panel.set(xlabel="y/d", ylabel="n", title=f"{tap} taps", xlim=(0, 23))
+
+
+def draw_growth(axes):
+    """[PB] 2: Phi_b against taps, logarithmic and linear, four strengths, with eq. 3 dotted."""
+    for k, strength in enumerate(STRENGTHS):
+        taps, beds = growth(strength, "bottom_fraction")
+        half = [Estimate.of(row).half_width() for row in beds]
+        means = beds.mean(axis=1)
+        for panel in axes:
+            panel.errorbar(taps, means, half, linestyle="none", marker=MARKS[k], color=COLOURS[k], markersize=2.5,
+                           capsize=1, elinewidth=.6, label=f"eps^(1/2) = {strength**0.5:.3g}")
+            panel.plot(taps, means - misfit_of_inverse_log(taps, means), "k:", label="eq. 3" if k == 3 else None)
+            panel.set(xlabel="taps", ylabel="Phi_b")
+    axes[0].set_xscale("log")
+    axes[0].legend()
 
 
 def draw_spectra(axes):
