@@ -1,11 +1,10 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "ensemble/analysis/table.hpp"
 #include "results/file/results_file.hpp"
-#include "study/tables/analyse.hpp"
+#include "study/tables/points/derived_value.hpp"
 #include "study/tables/points/point_scenes.hpp"
 
 namespace jostle::inline study {

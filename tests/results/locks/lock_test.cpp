@@ -107,7 +107,7 @@ TEST_CASE("the lock of another host is taken over by force only") {
   write_lock(path, "elsewhere", 1234, 5);
   CHECK(lock_owner(path)->alive);
   CHECK_THROWS_WITH(RunLock(path, false),
-                    Contains("process 1234 on host elsewhere") && Contains("take the file over"));
+                    Contains("process 1234 on host elsewhere") && Contains("takes the file over"));
   const RunLock lock(path, true);
   CHECK(lock_owner(path)->host == this_host());
 }
