@@ -1,6 +1,7 @@
 """Contrasts of [DR] 10 to 14: discrete elements tapped at Gamma = 2 and 0.5, the same pours at both.
 
-The window is that from the floor to 15 d, which numbers of [DR] 6 chose and others of it tested."""
+They were stated before a bed was finished; the claims of claims_dr.py follow once each strength has four. The window
+is that from the floor to 15 d, which numbers of [DR] 6 chose and others of it tested."""
 import numpy as np
 
 from contrasts_of_beds import SPHERE

@@ -16,20 +16,22 @@ from reduce import REDUCED, write_table
 FITS = REDUCED / CAMPAIGN / "fits.csv"
 
 
-def fitted(jostle):
-    """[(strength, parameter, low, high)], the ends as text, empty where there is none."""
-    rows = []
+def intervals(jostle, taps, beds):
+    """{parameter: (low, high)} at 95 %, None for no limit, of beds [tap, bed]."""
     with tempfile.TemporaryDirectory() as folder:
         curve = pathlib.Path(folder) / "phi_b.txt"
-        for strength in STRENGTHS:
-            curve.write_text("".join(" ".join(map(str, [t, *phi])) + "\n"
-                                     for t, phi in zip(*growth(strength, "bottom_fraction"))))
-            printed = subprocess.run([jostle, "fit", curve, "--realizations", "--model", "inverse_log", "--json"],
-                                     check=True, stdout=subprocess.PIPE).stdout
-            (fit,) = json.loads(printed)["curves"][0]["fits"]
-            rows += [(f"{strength:g}", name, *("" if end is None else f"{end:.4g}" for end in found["interval_95"]))
-                     for name, found in fit["parameters"].items()]
-    return rows
+        curve.write_text("".join(" ".join(map(str, [t, *phi])) + "\n" for t, phi in zip(taps, beds)))
+        printed = subprocess.run([jostle, "fit", curve, "--realizations", "--model", "inverse_log", "--json"],
+                                 check=True, stdout=subprocess.PIPE).stdout
+    (fit,) = json.loads(printed)["curves"][0]["fits"]
+    return {name: found["interval_95"] for name, found in fit["parameters"].items()}
+
+
+def fitted(jostle):
+    """[(strength, parameter, low, high)], the ends as text, empty where there is none."""
+    return [(f"{strength:g}", name, *("" if end is None else f"{end:.4g}" for end in ends))
+            for strength in STRENGTHS
+            for name, ends in intervals(jostle, *growth(strength, "bottom_fraction")).items()]
 
 
 if __name__ == "__main__":
