@@ -62,7 +62,7 @@ bool write_reports(const CostArguments& arguments, const CostStudy& study, const
   if (!arguments.csv.empty()) {
     std::string csv;
     for (const Table& table : tables) csv += table_csv(table);
-    write_text(arguments.csv, csv);
+    write_text(arguments.csv, csv, existing_files(arguments.force));
   }
   return keep_tables(output, "analysis", tables, provenance, arguments.patience, {});
 }

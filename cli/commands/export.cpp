@@ -77,12 +77,13 @@ struct Writing {
 };
 
 Writing writing(ExportFormat format, const std::string& output,
-                const std::vector<ExportedFrame>& frames) {
-  if (format == ExportFormat::h5md) return {{output}, [&] { write_h5md(output, frames); }};
+                const std::vector<ExportedFrame>& frames, ExistingFile existing) {
+  if (format == ExportFormat::h5md)
+    return {{output}, [&, existing] { write_h5md(output, frames, existing); }};
   Writing found;
   auto files = exported_files(format, output, frames);
   for (const ExportedFile& file : files) found.paths.push_back(file.path);
-  found.write = [files = std::move(files)] { write_together(files); };
+  found.write = [files = std::move(files), existing] { write_together(files, existing); };
   return found;
 }
 
@@ -93,7 +94,7 @@ int export_packings(const ExportArguments& arguments) {
                                  ? arguments.output
                                  : std::filesystem::path(arguments.input).stem().string() +
                                        found.suffix + "." + extension(format);
-  const Writing files = writing(format, output, found.frames);
+  const Writing files = writing(format, output, found.frames, existing_files(arguments.force));
   // Nothing is written where one of the files may not be.
   for (const std::string& path : files.paths) {
     require_replaceable(path, fmt::format("packing.{}", extension(format)));
@@ -123,7 +124,8 @@ int export_results(const ExportArguments& arguments) {
   require_replaceable(arguments.output, "copy.h5");
   require_text_output("-o", arguments.output, std::span(&input, 1), arguments.force);
   if (arguments.force) require_results_or_empty(arguments.output);
-  write_copy(input, arguments.output, arguments.live == Live::yes, arguments.patience);
+  write_copy(input, arguments.output, arguments.live == Live::yes, existing_files(arguments.force),
+             arguments.patience);
   warn_of_lost_seals(std::span(&input, 1));
   print(fmt::format("{}: {} of {}\n", printable_name(arguments.output),
                     arguments.live == Live::yes ? "results and last checkpoints" : "results",

@@ -230,7 +230,8 @@ int run_fits(const FitArguments& arguments) {
                          {"provenance", provenance_json(provenance)}};
     print_json(object);
   }
-  if (any && !arguments.csv.empty()) write_text(arguments.csv, csv);
+  if (any && !arguments.csv.empty())
+    write_text(arguments.csv, csv, existing_files(arguments.force));
   if (drawn) {
     const std::string written =
         write_measured(arguments.measured, *drawn, arguments.input, arguments.force, provenance);

@@ -212,12 +212,13 @@ void add_info(Command& app, int& code) {
   const Option digest =
       command.add_flag("--digest", arguments->digest,
                        "Print the SHA-256 of the data alone: equal for equal results");
-  command.add_flag("--json", arguments->json, "Print the summary as JSON").excludes(digest);
+  Option json = command.add_flag("--json", arguments->json, "Print the summary as JSON");
+  json.excludes(digest);
   Option reseal = command.add_flag(
       "--reseal", arguments->reseal,
       "Write the checksum at the file's end again, which other programs cut off when they open the "
       "file for writing; contents that were changed are refused");
-  reseal.excludes(digest);
+  reseal.excludes(digest).excludes(json);
   add_wait(command, arguments->patience);
   add_wide(command, arguments->layout);
   command.footer(

@@ -75,7 +75,7 @@ void write_schema(const fs::path& path, bool force) {
         path.string()));
     return;
   }
-  write_text(path.string(), scene_schema());
+  write_text(path.string(), scene_schema(), ExistingFile::replaced);
 }
 
 int write_new_scene(const NewArguments& arguments) {
@@ -98,7 +98,7 @@ int write_new_scene(const NewArguments& arguments) {
                     path.string()));
   }
   write_schema(path.parent_path() / schema_name, arguments.force);
-  write_text(path.string(), text);
+  write_text(path.string(), text, existing_files(arguments.force));
   print(fmt::format(
       "{}: a copy of {}; {} estimates its cost, {} writes {}.h5\n", path.string(), arguments.scene,
       shell_words({command_line().front(), "check", operand(path.string())}),

@@ -47,8 +47,9 @@ void write_figure_folder(const ReportArguments& arguments) {
 
 void write_catalogue(const ReportArguments& arguments) {
   require_text_output("--catalogue", arguments.catalogue, arguments.inputs, arguments.force);
-  write_text(arguments.catalogue, figure_catalogue(opened(arguments), arguments.figures.sweep_point,
-                                                   provenance_of_this_run("")));
+  const std::string catalogue = figure_catalogue(opened(arguments), arguments.figures.sweep_point,
+                                                 provenance_of_this_run(""));
+  write_text(arguments.catalogue, catalogue, existing_files(arguments.force));
 }
 
 void write_page(const ReportArguments& arguments) {
@@ -68,7 +69,7 @@ void write_page(const ReportArguments& arguments) {
   }
   const int threads = arguments.threads > 0 ? arguments.threads : available_cpus();
   const std::string page = report_page(sources, provenance_of_this_run(""), threads);
-  write_text(output, page);
+  write_text(output, page, existing_files(arguments.force));
   if (!is_stream(output)) {
     print(fmt::format("{}: {}; open it in a browser\n", output, format_bytes(double(page.size()))));
   }

@@ -197,7 +197,7 @@ void write_script(const SlurmArguments& arguments) {
   if (arguments.output.empty()) {
     print_exactly(text);
   } else {
-    write_text(arguments.output, text);
+    write_text(arguments.output, text, existing_files(arguments.force));
   }
   say(script.estimate);
   for (const std::string& warning : warnings_of(plan, arguments, cost, pilot))

@@ -32,7 +32,8 @@ constexpr const char* kinds[] = {".csv", ".json", ".py", ".svg", ".pdf"};
 /// full disk leaves neither an empty folder nor some of the data.
 class WrittenFigures {
  public:
-  explicit WrittenFigures(const std::string& folder) : folder_(folder) {
+  WrittenFigures(const std::string& folder, bool force)
+      : folder_(folder), existing_(existing_files(force)) {
     std::error_code fault;
     if (fs::exists(folder_, fault) && !fs::is_directory(folder_, fault)) {
       throw BadInput(fmt::format("--figures {}: it is a file. Name a folder.", folder));
@@ -51,13 +52,15 @@ class WrittenFigures {
   void write(const std::string& name, const std::string& text) {
     const fs::path path = folder_ / name;
     std::error_code fault;
-    if (!fs::exists(path, fault)) files_.push_back(path);
-    write_text(path.string(), text);
+    const bool is_new = !fs::exists(path, fault);
+    write_text(path.string(), text, existing_);
+    if (is_new) files_.push_back(path);
   }
   void keep() { kept_ = true; }
 
  private:
   fs::path folder_;
+  ExistingFile existing_;
   std::vector<fs::path> files_;
   bool made_ = false, kept_ = false;
 };
@@ -89,7 +92,7 @@ void require_room_for(const FigureFolder& folder, const std::vector<FigureOfFile
 /// Refuses first; then writes data, JSON and scripts, and draws.
 void write_all(const FigureFolder& folder, const std::vector<FigureOfFile>& figures,
                const std::vector<std::string>& inputs) {
-  WrittenFigures written(folder.path);
+  WrittenFigures written(folder.path, folder.force);
   require_room_for(folder, figures, inputs);
   std::vector<Json> described;
   for (const FigureOfFile& figure : figures) {

@@ -40,26 +40,26 @@ bool keep_tables(const std::string& path, const std::string& group, std::span<co
   }
 }
 
-void write_text(const std::string& path, const std::string& text) {
+void write_text(const std::string& path, const std::string& text, ExistingFile existing) {
   const auto bytes = std::as_bytes(std::span(text));
   const std::string end = output_path(path);
-  if (!is_stream(path)) return publish(end, bytes);
+  if (!is_stream(path)) return publish(end, bytes, existing);
   const Descriptor stream(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY));
   if (!stream) fail_on_disk(path, "open", errno);
   write_all(path, stream.get(), bytes);
 }
 
-void write_together(std::span<const ExportedFile> files) {
+void write_together(std::span<const ExportedFile> files, ExistingFile existing) {
   std::vector<std::unique_ptr<TemporaryFile>> written;
   for (const ExportedFile& file : files) {
     if (is_stream(file.path)) continue;
-    written.push_back(std::make_unique<TemporaryFile>(output_path(file.path)));
+    written.push_back(std::make_unique<TemporaryFile>(output_path(file.path), existing));
     written.back()->write(std::as_bytes(std::span(file.text)));
     written.back()->finish();
   }
   publish_all(written);
   for (const ExportedFile& file : files)
-    if (is_stream(file.path)) write_text(file.path, file.text);
+    if (is_stream(file.path)) write_text(file.path, file.text, existing);
 }
 
 Json provenance_json(const Provenance& provenance) {

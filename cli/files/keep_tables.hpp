@@ -7,6 +7,7 @@
 #include "config/json/json.hpp"
 #include "ensemble/analysis/table.hpp"
 #include "results/content/study.hpp"
+#include "results/disk/publish.hpp"
 #include "results/export/export.hpp"
 #include "results/file/results_file.hpp"
 #include "results/locks/patience.hpp"
@@ -22,11 +23,11 @@ namespace jostle::inline cli {
                                const Patience& patience, const std::optional<DataVersion>& made);
 
 /// Puts the text into a file, whole or not at all, or into a pipe or a device. Throws ResultsError.
-void write_text(const std::string& path, const std::string& text);
+void write_text(const std::string& path, const std::string& text, ExistingFile existing);
 
 /// Puts each of the texts into its file, or, where one cannot be, none: what was there stays. Pipes
 /// and devices are written last. Throws ResultsError.
-void write_together(std::span<const ExportedFile> files);
+void write_together(std::span<const ExportedFile> files, ExistingFile existing);
 
 /// Who made what is printed.
 Json provenance_json(const Provenance& provenance);

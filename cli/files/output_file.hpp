@@ -3,9 +3,17 @@
 #include <span>
 #include <string>
 
+#include "results/disk/publish.hpp"
+
 // Checks of outputs of a command. Each throws BadInput, or with ResultsError where there is no
 // such folder, and is called before any work is done.
 namespace jostle::inline cli {
+
+/// The meaning of --force. Files that exist are refused before any work is done, and once more when
+/// the new file gets its name: two commands may make it at the same time.
+inline ExistingFile existing_files(bool force) {
+  return force ? ExistingFile::replaced : ExistingFile::kept;
+}
 
 /// True if a path is a pipe, a device, or a descriptor such as /dev/stdout: text can go there as it
 /// comes, but no file in its place.

@@ -64,7 +64,8 @@ std::string write_measured(const MeasuredOutput& output, const FittedCurve& fitt
     text += write_figures(fitted, input, folder, provenance);
   }
   if (!output.page.empty()) {
-    write_text(output.page, measured_page(fitted, drawn_figures(fitted), provenance));
+    write_text(output.page, measured_page(fitted, drawn_figures(fitted), provenance),
+               existing_files(force));
     text += fmt::format("{}: open it in a browser\n", output.page);
   }
   return text;

@@ -6,6 +6,7 @@
 
 #include "cli/files/keep_tables.hpp"
 #include "cli/files/live_input.hpp"
+#include "cli/files/output_file.hpp"
 #include "cli/files/waiting.hpp"
 #include "cli/tables/table_output.hpp"
 #include "cli/tables/table_text.hpp"
@@ -69,7 +70,7 @@ int ShownTables::end(const Provenance& provenance) const {
     print_json(object);
   }
   // A file of refusals alone would be in the way of the corrected command.
-  if (any_ && !output_.csv.empty()) write_text(output_.csv, csv_);
+  if (any_ && !output_.csv.empty()) write_text(output_.csv, csv_, existing_files(output_.force));
   if (!all_stored_) return exit_io_error;
   if (any_) return exit_ok;
   print_to_standard_error(fmt::format("jostle: no table could be made{}\n", refusals_));

@@ -99,8 +99,13 @@ void write_all(const std::string& path, int descriptor, std::span<const std::byt
   }
 }
 
-void publish(const std::string& path, std::span<const std::byte> bytes) {
-  TemporaryFile file(path);
+void refuse_existing(const std::string& path) {
+  throw ResultsError(path, "exists already; choose another name, or replace it",
+                     ResultsError::Force::helps);
+}
+
+void publish(const std::string& path, std::span<const std::byte> bytes, ExistingFile existing) {
+  TemporaryFile file(path, existing);
   file.write(bytes);
   file.publish();
 }

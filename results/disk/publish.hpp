@@ -9,9 +9,17 @@
 // and the folder fsynced. All throw ResultsError.
 namespace jostle::inline results {
 
-/// Publishes the bytes under `path`, replacing what was there, but for a link, which is refused
-/// (output_path). On failure what was there stays.
-void publish(const std::string& path, std::span<const std::byte> bytes);
+/// The fate of a file that has the name already when the new one gets it. A file that is kept
+/// refuses the new one: refuse_existing().
+enum class ExistingFile { replaced, kept };
+/// Throws the ResultsError of a file that is kept.
+
+[[noreturn]] void refuse_existing(const std::string& path);
+
+/// Publishes the bytes under `path`, but never in place of a link, which is refused (output_path).
+/// On failure what was there stays.
+void publish(const std::string& path, std::span<const std::byte> bytes,
+             ExistingFile existing = ExistingFile::replaced);
 
 /// All bytes to a descriptor that is open on `path`, whatever interrupts or shortens a write.
 void write_all(const std::string& path, int descriptor, std::span<const std::byte> bytes);

@@ -27,7 +27,7 @@ constexpr std::string_view ending = ".tmp";
 constexpr mode_t permissions = 0777;
 
 /// The file to be replaced, if this is permitted.
-std::optional<struct stat> replaced_file(const std::string& path) {
+std::optional<struct stat> replaced_file(const std::string& path, ExistingFile existing) {
   struct stat status;
   if (::lstat(path.c_str(), &status) != 0) {
     if (errno == ENOENT) return std::nullopt;
@@ -36,7 +36,17 @@ std::optional<struct stat> replaced_file(const std::string& path) {
   if (S_ISLNK(status.st_mode))
     throw ResultsError(path, "is a link that jostle did not make: remove it");
   require_replaceable_file(path);
+  if (existing == ExistingFile::kept) refuse_existing(path);
   return status;
+}
+
+/// Gives a file a second name that nothing has yet. Returns false where the file system has no
+/// second names, as FAT has none.
+bool link_at(const std::string& name, const std::string& target) {
+  if (::link(name.c_str(), target.c_str()) == 0) return true;
+  if (errno == EEXIST) refuse_existing(target);
+  if (errno == EPERM || errno == ENOTSUP || errno == ENOSYS) return false;
+  fail_on_disk(name, "link", errno);
 }
 
 /// The owner and the permissions of what will be replaced, as far as the system lets us.
@@ -67,10 +77,11 @@ bool is_temporary(const std::string& path, const std::string& target) {
 
 }  // namespace
 
-TemporaryFile::TemporaryFile(const std::string& path) : target_(path) {
+TemporaryFile::TemporaryFile(const std::string& path, ExistingFile existing)
+    : target_(path), existing_(existing) {
   require_name_fits(target_);
   output_path(target_);  // refuses links of others on the way
-  const auto old = replaced_file(target_);
+  const auto old = replaced_file(target_, existing_);
   const mode_t mode = old ? 0600 : 0666;
   do {
     name_ = name_on_the_way(target_, random_identity().substr(0, random_digits));
@@ -99,25 +110,35 @@ void TemporaryFile::finish() {
   file_ = Descriptor();
 }
 
+void TemporaryFile::take_name() {
+  if (existing_ == ExistingFile::kept) {
+    published_ = link_at(name_, target_);
+    if (published_) return remove_file(name_);  // its first name
+    replaced_file(target_, existing_);
+  }
+  if (::rename(name_.c_str(), target_.c_str()) != 0) fail_on_disk(name_, "rename", errno);
+  published_ = true;
+}
+
 void TemporaryFile::publish(const std::function<void()>& prepare) {
   finish();
   if (prepare) prepare();
-  if (::rename(name_.c_str(), target_.c_str()) != 0) fail_on_disk(name_, "rename", errno);
-  published_ = true;
+  take_name();
   sync_folder_of(target_);
 }
 
 void publish_all(std::span<const std::unique_ptr<TemporaryFile>> files) {
-  std::vector<std::string> added;
+  std::vector<const TemporaryFile*> added;
   try {
     for (const auto& file : files) {
       struct stat status;
       const bool is_new = ::lstat(file->target().c_str(), &status) != 0;
-      if (is_new) added.push_back(file->target());
+      if (is_new) added.push_back(file.get());
       file->publish();
     }
   } catch (const ResultsError&) {
-    for (const std::string& path : added) ::unlink(path.c_str());
+    for (const TemporaryFile* const file : added)
+      if (file->is_published()) ::unlink(file->target().c_str());
     throw;
   }
 }

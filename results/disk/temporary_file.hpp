@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "results/disk/publish.hpp"
 #include "results/disk/system_calls.hpp"
 
 namespace jostle::inline results {
@@ -16,9 +17,9 @@ namespace jostle::inline results {
 /// published. Everything throws ResultsError.
 class TemporaryFile {
  public:
-  /// Makes an empty file beside `path`. An existing file will be replaced: its permissions are
-  /// copied. A link, a directory or a write-protected file is rejected.
-  explicit TemporaryFile(const std::string& path);
+  /// Makes an empty file beside `path`. Permissions of a file that will be replaced are copied. A
+  /// link, a directory, a write-protected file and a file to be kept are rejected.
+  explicit TemporaryFile(const std::string& path, ExistingFile existing = ExistingFile::replaced);
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   ~TemporaryFile();
@@ -30,11 +31,15 @@ class TemporaryFile {
   /// On disk first, then under its name, then the name on disk. `prepare` is called once it is on
   /// disk: what must go when the new file comes, and must stay if it does not.
   void publish(const std::function<void()>& prepare = {});
+  bool is_published() const { return published_; }
   /// On disk, not yet under its name, and closed: nothing more is written to it.
   void finish();
 
  private:
+  void take_name();
+
   std::string target_, name_;
+  ExistingFile existing_;
   Descriptor file_;
   bool published_ = false;
 };

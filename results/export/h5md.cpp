@@ -118,7 +118,7 @@ bool have_equal_columns(const ExportedFrame& a, const ExportedFrame& b) {
 
 }  // namespace
 
-void write_h5md(const std::string& path, Frames frames) {
+void write_h5md(const std::string& path, Frames frames, ExistingFile existing) {
   const std::size_t n_spheres = frames.front().packing.centres.size();
   for (const ExportedFrame& frame : frames) {
     const std::size_t n = frame.packing.centres.size();
@@ -138,7 +138,7 @@ void write_h5md(const std::string& path, Frames frames) {
                       "export them one by one",
                       frame.tap));
   }
-  TemporaryFile temporary(output_path(path));
+  TemporaryFile temporary(output_path(path), existing);
   naming_file(temporary.name(), [&] {
     WritableHdf5File file(temporary.name());
     write_h5md_root(file);

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "results/disk/publish.hpp"
 #include "results/export/particle_columns.hpp"
 
 namespace jostle::inline results {
@@ -12,6 +13,7 @@ namespace jostle::inline results {
 /// frame as three vectors. No unit is named: lengths are in diameters.
 /// https://h5md.nongnu.org/h5md.html Throws std::invalid_argument where frames have different
 /// numbers of spheres, ResultsError.
-void write_h5md(const std::string& path, std::span<const ExportedFrame> frames);
+void write_h5md(const std::string& path, std::span<const ExportedFrame> frames,
+                ExistingFile existing = ExistingFile::replaced);
 
 }  // namespace jostle::inline results

@@ -106,9 +106,12 @@ ResultsFile live_results(const std::string& named, Content content) {
 }
 
 void write_copy(const std::string& named, const std::string& output, bool live,
-                const Patience& patience) {
+                ExistingFile existing, const Patience& patience) {
   const std::string results_path = end_of_links(named), replaced = output_path(output);
   const RunLock lock(replaced, false, LockUse::run, patience);
+  struct stat status;  // once more: another command may have made the file during the wait
+  if (existing == ExistingFile::kept && ::stat(replaced.c_str(), &status) == 0)
+    refuse_existing(replaced);
   if (parts_exist(replaced)) {
     throw ResultsError(parts_folder(replaced),
                        "holds parts of another run, which the copy would cut off from theirs; "

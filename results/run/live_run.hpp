@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "results/disk/publish.hpp"
 #include "results/file/results_file.hpp"
 #include "results/locks/lock_owner.hpp"
 #include "results/locks/patience.hpp"
@@ -39,8 +40,8 @@ LiveLook look_at_run(const std::string& results_path, SlurmQueue& queue,
 ResultsFile live_results(const std::string& results_path, Content content = Content::everything);
 
 /// Writes it as a results file `output`, without derived tables. `live`: with the
-/// checkpoints. Throws ResultsError.
+/// checkpoints. Throws ResultsError, also for a file that exists and is to be kept.
 void write_copy(const std::string& results_path, const std::string& output, bool live,
-                const Patience& patience = {});
+                ExistingFile existing = ExistingFile::kept, const Patience& patience = {});
 
 }  // namespace jostle::inline results

@@ -156,9 +156,7 @@ void merge_files(std::span<const std::string> inputs, const std::string& named,
   require_replaceable_file(output);
   remove_stale_temporaries(output);
   struct stat status;
-  if (!force && ::stat(output.c_str(), &status) == 0)
-    throw ResultsError(output, "exists already; choose another name, or replace it",
-                       ResultsError::Force::helps);
+  if (!force && ::stat(output.c_str(), &status) == 0) refuse_existing(output);
   if (!force && parts_exist(output))
     throw ResultsError(
         parts_folder(output),

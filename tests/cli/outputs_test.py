@@ -1,15 +1,16 @@
 """Where the program writes: links that another user planted are followed nowhere, and no source opens a file
-to write but through the functions that look."""
+to write but through the functions that look. A file that another command makes meanwhile is kept."""
 
 import json
 import os
 import re
 import shutil
+import signal
 import stat
 import subprocess
 import unittest
 
-from support import BROKEN, JOSTLE, OK, PLAIN, SOURCE, TINY, Case, changed
+from support import BROKEN, JOSTLE, OK, PLAIN, SHIM, SOURCE, TINY, Case, changed
 
 OWN, OTHER = 65534, 65533  # users without a name
 RUN_AS = ["setpriv", f"--reuid={OWN}", f"--regid={OWN}", "--clear-groups"]
@@ -174,6 +175,43 @@ class Planted(Case):
             if name != ".job.7":
                 self.assertEqual(done.returncode, BROKEN, done.stdout)
                 os.unlink(self.folder / "shared/of-job" / name)
+
+
+class Meanwhile(Case):
+    """A file that appears while a command makes one of the same name."""
+
+    COMMANDS = (
+        "fit a.h5 --observable mean_height --model kww --no-store --csv out",
+        "analyse a.h5 steady --observable mean_height --no-store --csv out",
+        "report a.h5 -o out",
+        "export a.h5 --format extxyz -o out",
+        "export a.h5 --format h5md -o out",
+        "export a.h5 --format results -o out",
+    )
+
+    def paused(self, command):
+        process = self.popen(*command.split(), environment={
+            **SHIM, "JOSTLE_FAULT_PATH": str(self.folder / "out"), "JOSTLE_FAULT_ACTION": "pause",
+            "JOSTLE_FAULT_AT": "1"})
+        change = os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+        self.assertEqual(change.si_code, os.CLD_STOPPED, "ended before it was paused")
+        return process
+
+    def test_it_is_kept_unless_force_is_given(self):
+        self.write(ONE)
+        self.run_scene("--quiet", "-o", "a.h5")
+        before = self.files()
+        for command in self.COMMANDS:
+            with self.subTest(command):
+                process = self.paused(command)
+                (self.folder / "out").write_text("others")
+                process.send_signal(signal.SIGCONT)
+                _, errors = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, BROKEN, errors)
+                self.assertIn("out: exists already; choose another name, or replace it (--force)", errors)
+                self.assertEqual((self.folder / "out").read_text(), "others")
+                self.assertEqual(sorted(self.files()), sorted([*before, "out"]))
+                (self.folder / "out").unlink()
 
 
 class Sources(Case):

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from crafted_files import SEAL
-from support import BROKEN, JOSTLE, OK, SOURCE, STOPPED, SLOW, TINY, Case, changed
+from support import BAD_INPUT, BROKEN, JOSTLE, OK, SOURCE, STOPPED, SLOW, TINY, Case, changed
 
 sys.path.insert(0, str(SOURCE / "python"))
 import jostle  # noqa: E402
@@ -89,6 +89,7 @@ class Seal(Case):
         self.assertTrue(self.sealed())  # HDF5 1.14 has moved bytes, of which none counts
         self.assertEqual(self.digest("file.h5"), digest)
         self.assertIn("nothing to do", self.jostle("info", "--reseal", "file.h5").stdout)
+        self.assertIn("--json", self.jostle("info", "--reseal", "--json", "file.h5", expect=BAD_INPUT).stderr)
         for command in (["fit", "file.h5", "--observable", "mean_height", "--model", "inverse_log"],
                         ["analyse", "file.h5", "steady", "--observable", "mean_height"],
                         ["structure", "file.h5", "--part", "profile"]):

@@ -2,7 +2,7 @@
  * the order in which they come, and acts on one of them. Kinds, by JOSTLE_FAULT_OF:
  *
  *   changes  (default) write, writev, pwrite, pwrite64, fsync, fdatasync, ftruncate, ftruncate64,
- *            rename, renameat, unlink and rmdir that touch a path beginning with JOSTLE_FAULT_PATH,
+ *            rename, renameat, link, unlink and rmdir that touch a path beginning with JOSTLE_FAULT_PATH,
  *            or a descriptor open on one
  *   reads    read, readv, pread and pread64 of such a descriptor
  *   output   write and writev to descriptor 1, whatever it is open on
@@ -236,6 +236,12 @@ int renameat(int from_folder, const char* from, int to_folder, const char* to) {
   if (!counts_path(to)) return NEXT(renameat)(from_folder, from, to_folder, to);
   note("renameat", to);
   ACT(others, NEXT(renameat)(from_folder, from, to_folder, to));
+}
+
+int link(const char* from, const char* to) {
+  if (!counts_path(to)) return NEXT(link)(from, to);
+  note("link", to);
+  ACT(others, NEXT(link)(from, to));
 }
 
 int unlink(const char* path) {

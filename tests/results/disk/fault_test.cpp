@@ -11,6 +11,7 @@
 
 #include "results/file/results_file.hpp"
 #include "results/run/run_store.hpp"
+#include "tests/results/disk/file_text.hpp"
 #include "tests/results/forked.hpp"
 #include "tests/results/synthetic.hpp"
 #include "tests/results/temporary_folder.hpp"
@@ -46,12 +47,6 @@ Ending work_with_fault(const Place& place, const std::string& action, long call)
                      {"JOSTLE_FAULT_ACTION", action},
                      {"JOSTLE_FAULT_AT", fmt::format("{}", call)}},
                     place.messages, [&] { work_on(place.path, whole); });
-}
-
-std::string text_of(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
 }
 
 /// The number of calls that an undisturbed run makes, and its digest.

@@ -15,6 +15,7 @@
 #include "results/run/live_run.hpp"
 #include "results/run/merge.hpp"
 #include "results/run/run_parts.hpp"
+#include "tests/results/disk/file_text.hpp"
 #include "tests/results/runs.hpp"
 #include "tests/results/temporary_folder.hpp"
 
@@ -26,19 +27,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string text_of(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 unsigned mode_of(const std::string& path) {
   struct stat status {};
   ::lstat(path.c_str(), &status);
   return status.st_mode & 07777;
-}
-
-std::span<const std::byte> bytes_of(const std::string& text) {
-  return std::as_bytes(std::span(text));
 }
 
 /// A folder with somebody's files, which must not change.

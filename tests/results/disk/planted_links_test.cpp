@@ -16,6 +16,7 @@
 #include "results/run/live_run.hpp"
 #include "results/run/merge.hpp"
 #include "results/run/run_parts.hpp"
+#include "tests/results/disk/file_text.hpp"
 #include "tests/results/runs.hpp"
 #include "tests/results/temporary_folder.hpp"
 
@@ -40,11 +41,6 @@ struct SharedFolder {
     REQUIRE(::chmod(folder.c_str(), mode) == 0);
   }
 };
-
-std::string text_of(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 void run_whole(const std::string& path) {
   const Study study = synthetic::study({});

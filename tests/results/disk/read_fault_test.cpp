@@ -11,6 +11,7 @@
 #include "results/export/extended_xyz.hpp"
 #include "results/export/packing_file.hpp"
 #include "results/file/tables.hpp"
+#include "tests/results/disk/file_text.hpp"
 #include "tests/results/forked.hpp"
 #include "tests/results/runs.hpp"
 #include "tests/results/temporary_folder.hpp"
@@ -20,11 +21,6 @@
 using namespace jostle;
 
 namespace {
-
-std::string text_of(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// Result of a reader for a file, as text.
 using Reading = std::function<std::string(const std::string& path)>;
