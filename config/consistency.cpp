@@ -74,6 +74,14 @@ class Check {
     return fmt::format("/protocol/{}/{}", i, scene_.protocol[i].ramp ? "ramp" : "tap");
   }
 
+  void spheres_can_be_tried() {
+    if (scene_.grains || !all_sound({"/container", "/spheres", "/protocol"})) return;
+    const bool tries = total_taps(scene_.protocol) > 0 || scene_.relax_start ||
+                       std::holds_alternative<RandomSettle>(scene_.start);
+    const double largest = scene_.kinds.empty() ? 1 : range_of(scene_.kinds).greatest;
+    if (tries) note_if("/container", room_fault(scene_.container, largest));
+  }
+
   void relaxations_can_be() {
     if (scene_.grains) return;
     relaxation_can_be(scene_.relax, "/relax");
@@ -178,6 +186,7 @@ void check_consistency(const Scene& scene, std::vector<Fault>& faults) {
   check_kinds(scene, faults);
   check.start_suits_container();
   check.engine_suits();
+  check.spheres_can_be_tried();
   check.relaxations_can_be();
   check.observables_have_a_floor();
   check.taps_suit_container();

@@ -8,6 +8,7 @@
 
 #include "config/parts/parts.hpp"
 #include "config/sweep.hpp"
+#include "config/swept_defaults.hpp"
 #include "ensemble/statistics/counted.hpp"
 
 namespace jostle::inline config {
@@ -56,7 +57,9 @@ constexpr auto engine_field = irregular(
       if (const auto engine = reader.find("engine")) scene.grains = read_engine(*engine);
     },
     [](const Scene& scene, Json& json) {
-      if (scene.grains) json["engine"] = written_engine(*scene.grains);
+      if (!scene.grains) return;
+      json["engine"] = written_engine(*scene.grains);
+      if (leaves_steps_out(scene)) json["engine"]["discrete_element"].erase("steps_per_contact");
     },
     [](ObjectSchema& schema, Definitions& definitions) {
       schema.properties["engine"] = described_as(engine_schema(definitions), "Engine",
@@ -112,18 +115,7 @@ constexpr auto relax_start_field = irregular(
           std::nullopt, "");
     });
 
-bool sweeps_engine(const Scene& scene) {
-  return std::ranges::any_of(scene.sweep, [](const SweepAxis& axis) {
-    return std::ranges::any_of(axis.columns,
-                               [](const auto& column) { return column.first == "/engine"; });
-  });
-}
-bool keeps_default(const Scene& scene) {
-  return written_part(scene.snapshots).at("keep") ==
-         written_part(default_snapshots(scene.grains.has_value())).at("keep");
-}
-
-// The engine decides what is kept by default: where it is swept, "keep" is not spelled out.
+// The engine decides what is kept by default.
 constexpr auto snapshots_field = irregular(
     "snapshots",
     [](const Reader& reader, Scene& scene) {
@@ -132,7 +124,7 @@ constexpr auto snapshots_field = irregular(
     },
     [](const Scene& scene, Json& json) {
       Json& snapshots = json["snapshots"] = written_part(scene.snapshots);
-      if (sweeps_engine(scene) && keeps_default(scene)) snapshots.erase("keep");
+      if (leaves_kept_data_out(scene)) snapshots.erase("keep");
     },
     [](ObjectSchema& schema, Definitions& definitions) {
       schema.properties["snapshots"] =
@@ -176,8 +168,9 @@ constexpr auto pour_order_field = irregular(
           "random", "");
     });
 
-/// A mixture observes other quantities by default than equal spheres do.
 constexpr auto observe_form = list_of(OneOf<Observable>{.by_name = true}, 0, 100, "observables");
+
+/// A mixture observes other quantities by default than equal spheres do: the height of every kind.
 constexpr auto observe_field = irregular(
     "observe",
     [](const Reader& reader, Scene& scene) {
@@ -188,6 +181,7 @@ constexpr auto observe_field = irregular(
     },
     [](const Scene& scene, Json& json) {
       json["observe"] = written_value(observe_form, scene.observables);
+      if (leaves_observables_out(scene)) json.erase("observe");
     },
     [](ObjectSchema& schema, Definitions& definitions) {
       schema.properties["observe"] =

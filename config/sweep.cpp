@@ -73,6 +73,10 @@ Scene scene_at(const Json& resolved_scene, const SweepPoint& point, std::vector<
       changed["engine"] = value;  // a resolved scene of Monte Carlo does not name it
     } else if (Json* place = changed.find_pointer(pointer)) {
       *place = value;
+    } else if (!value.is_null()) {
+      faults.push_back({pointer,
+                        "applies only to Monte Carlo, and this point has discrete elements: sweep "
+                        "it in a \"zip\" with \"/engine\", and give null here"});
     }
   }
   Scene scene = read_scene(Reader{changed, "", faults});

@@ -66,16 +66,32 @@ class LateralOffsets {
     return false;
   }
 
+  /// Grains at rest press into each other and into the boundaries: an offset may keep such an
+  /// overlap, and make none deeper. Spheres of Monte Carlo have none.
   bool is_free(std::uint32_t i, Vec3 target) const {
+    if (!is_in_container(i, target)) return false;
     const double radius = packing_.radius(i);
-    if (!clear_of_boundaries(boundary_, target, radius)) return false;
+    const Vec3 present = packing_.centres[i];
     bool free = true;
     grid_.for_each_near(origins_[i], radius, [&](std::uint32_t j) {
       if (j == i) return;
+      const Vec3 neighbour = packing_.centres[j];
       const double touching = radius + packing_.radius(j);
-      if (overlaps(boundary_, target, packing_.centres[j], touching)) free = false;
+      if (!overlaps(boundary_, target, neighbour, touching)) return;
+      const bool keeps_overlap = overlaps(boundary_, present, neighbour, touching) &&
+                                 norm_squared(separation(boundary_, target, neighbour)) >=
+                                     norm_squared(separation(boundary_, present, neighbour));
+      free = free && keeps_overlap;
     });
     return free;
+  }
+
+  bool is_in_container(std::uint32_t i, Vec3 target) const {
+    const double radius = packing_.radius(i);
+    if (clear_of_boundaries(boundary_, target, radius)) return true;
+    const Vec3 present = packing_.centres[i];
+    return !clear_of_boundaries(boundary_, present, radius) &&
+           boundary_depth(boundary_, target) <= boundary_depth(boundary_, present);
   }
 
   Packing& packing_;

@@ -3,9 +3,7 @@
 namespace jostle::inline config {
 
 bool read_part(const Reader& reader, DiscreteElement& grains) {
-  const bool read = read_object(DiscreteElement::fields(), reader, grains);
-  if (!grains.steps_per_contact) grains.steps_per_contact = steps_of_contact(grains);
-  return read;
+  return read_object(DiscreteElement::fields(), reader, grains);
 }
 Json written_part(const DiscreteElement& grains) {
   DiscreteElement complete = grains;

@@ -159,7 +159,15 @@ constexpr std::tuple snapshot_fields{
 
 std::optional<std::string> part_fault(const BulkFraction& bulk) {
   const auto* window = std::get_if<HeightWindow>(&bulk.window);
-  if (window == nullptr || window->low >= 0.5 * bulk.taper) return std::nullopt;
+  constexpr double lowest = 0.5;  // no centre, and no quantile, is lower
+  if (window == nullptr) {
+    if (lowest >= 0.5 * bulk.taper) return std::nullopt;
+    return finite_text(
+        "quantiles tapered over {} can reach below the floor, where nothing counts "
+        "as empty space: taper over 1 or less, or give heights",
+        bulk.taper);
+  }
+  if (window->low >= 0.5 * bulk.taper) return std::nullopt;
   return finite_text("a window from {} tapered over {} begins below the floor: begin at {} or more",
                      window->low, bulk.taper, 0.5 * bulk.taper);
 }

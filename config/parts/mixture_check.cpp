@@ -125,11 +125,16 @@ void check_mixture(const Scene& scene, const DiameterRange& range,
   check.observables_take_sizes(kinds);
   check.structure_takes_sizes();
   check.analyses_take_sizes();
+  const bool is_poured = std::holds_alternative<SteepestDescentPour>(scene.start);
+  if (scene.pour_order != PourOrder::random && !is_poured && sound(faults, "/pour_order"))
+    faults.push_back({"/pour_order",
+                      "an order is that of poured spheres: leave it out, or use {\"pour\": "
+                      "\"steepest_descent\"}"});
   if (!sound(faults, "/container")) return;
   for (std::size_t i = 0; i < scene.kinds.size(); ++i) {
     if (!scene.kinds[i].place) continue;
     const std::string place = fmt::format("/spheres/{}/place", i);
-    if (!std::holds_alternative<SteepestDescentPour>(scene.start))
+    if (!is_poured)
       faults.push_back({place,
                         "a place is that of a poured sphere: leave it out, or use {\"pour\": "
                         "\"steepest_descent\"}"});

@@ -56,7 +56,7 @@ std::optional<DiscreteElement> read_engine(const Reader& reader);
 Json written_engine(const DiscreteElement& grains);
 Json engine_schema(Definitions& definitions);
 
-/// A window of heights that is tapered below the floor.
+/// A window that is tapered below the floor, or can be.
 std::optional<std::string> part_fault(const BulkFraction& bulk);
 
 bool read_value(const TapNumbers& form, const Reader& reader, TapChoice& target);

@@ -208,6 +208,17 @@ std::optional<std::string> width_fault(const Container& container, double larges
   return boundary.periodic_z ? narrow(true, "periodic height", boundary.height) : std::nullopt;
 }
 
+std::optional<std::string> room_fault(const Container& container, double largest_diameter) {
+  const Boundary boundary(container);
+  double least = std::numeric_limits<double>::infinity();
+  if (!boundary.periodic_x) least = std::min(least, boundary.width_x);
+  if (!boundary.periodic_y) least = std::min(least, boundary.width_y);
+  if (least > largest_diameter) return std::nullopt;
+  return "spheres of diameter " + diameter_text(largest_diameter) +
+         " fill the width between the sides: every trial sideways fails, and nothing settles. Make "
+         "the container wider, by 0.001 diameters or more, or use discrete elements";
+}
+
 std::uint64_t n_spheres_of(const std::vector<MixtureKind>& kinds) {
   std::uint64_t n = 0;
   for (const MixtureKind& kind : kinds) n += kind.count;

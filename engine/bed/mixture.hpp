@@ -132,6 +132,10 @@ DiameterRange range_of(const std::vector<MixtureKind>& kinds);
 /// two diameters of the largest sphere, other widths are at least one.
 std::optional<std::string> width_fault(const Container& container, double largest_diameter);
 
+/// Returns why trials do not move spheres as large in the container, or nothing: between walls just
+/// as wide as a sphere every trial sideways fails, and the bed seems settled wherever it is.
+std::optional<std::string> room_fault(const Container& container, double largest_diameter);
+
 /// All spheres of the kinds.
 std::uint64_t n_spheres_of(const std::vector<MixtureKind>& kinds);
 

@@ -119,7 +119,8 @@ struct DiscreteElement {
       steps_per_contact{};  // steps of the shortest contact; absent: steps_of_contact()
   Rest rest;
   double most_seconds = 5;  // limit of one tap or start: then it is capped
-  bool operator==(const DiscreteElement&) const = default;
+  /// True if both move grains alike: a default that is spelled out is the same.
+  bool operator==(const DiscreteElement& grains) const;
 
   template <class Self = DiscreteElement>
   static constexpr auto fields() {
@@ -164,7 +165,7 @@ struct LightestMasses {
 };
 LightestMasses lightest_masses(std::span<const double> masses);
 LightestMasses lightest_masses(const Packing& bed);
-/// Bounds from above, whatever diameters are drawn. Requires kinds without faults; those of equal
+/// Bounds from below, whatever diameters are drawn. Requires kinds without faults; those of equal
 /// spheres where there are none.
 LightestMasses lightest_masses(const std::vector<MixtureKind>& kinds);
 

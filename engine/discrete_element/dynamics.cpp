@@ -146,7 +146,7 @@ class GrainDynamics final : public Dynamics {
     state_.start_energies = loop_->energies();
   }
 
-  // Repeats the check of the scene, which does not know the sizes of a packing from a file.
+  // Repeats the check of the scene, which does not know the sizes of a file or those drawn.
   void require_resolved(const FloorMotion& motion) const {
     const double steps = 0.5 / motion.frequency / units_.time_step;
     if (steps >= least_steps_per_half_period) return;

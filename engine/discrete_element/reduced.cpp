@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "engine/bed/container.hpp"
@@ -116,6 +117,15 @@ ReducedSettings reduced(const DiscreteElement& settings, const LightestMasses& l
   return reduced_settings;
 }
 
+bool DiscreteElement::operator==(const DiscreteElement& grains) const {
+  const auto all_but_steps = [](const DiscreteElement& settings) {
+    return std::tie(settings.diameter, settings.density, settings.gravity, settings.spheres,
+                    settings.floor, settings.sides, settings.rest, settings.most_seconds);
+  };
+  return all_but_steps(*this) == all_but_steps(grains) &&
+         steps_of_contact(*this) == steps_of_contact(grains);
+}
+
 double steps_of_contact(const DiscreteElement& settings) {
   const bool has_dashpots = std::holds_alternative<LinearSpringDashpot>(settings.spheres);
   return settings.steps_per_contact.value_or(has_dashpots ? 160 : 40);
@@ -144,7 +154,7 @@ LightestMasses lightest_masses(const std::vector<MixtureKind>& kinds) {
       std::ranges::for_each(listed->values, add);
     } else {
       for (std::uint32_t k = 0; k < std::min(kind.count, 2u); ++k)
-        add(range_of(kind.diameter).greatest);
+        add(range_of(kind.diameter).least);
     }
   }
   return lightest_masses(masses);

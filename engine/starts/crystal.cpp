@@ -130,7 +130,12 @@ std::vector<Vec3> layer_sites(const CrystalPlan& plan, const Boundary& boundary,
   const bool tube = boundary.tube;
   const double corner_x = tube ? boundary.axis() : boundary.margin_x();
   const double corner_y = tube ? boundary.axis() : boundary.margin_y();
-  const long first_row = tube ? -plan.rows.count : 0, first = tube ? -plan.across.count : 0;
+  // Shifted rows and layers may have a site before the first one between walls.
+  const auto first_of = [tube](const Rows& rows, bool periodic) {
+    return tube ? -rows.count : (periodic ? 0L : -1L);
+  };
+  const long first = first_of(plan.across, boundary.periodic_x),
+             first_row = first_of(plan.rows, boundary.periodic_y);
   std::vector<Vec3> sites;
   for (long j = first_row; j < plan.rows.count; ++j) {
     for (long i = first; i < plan.across.count; ++i) {

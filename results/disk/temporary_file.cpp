@@ -110,10 +110,19 @@ void TemporaryFile::finish() {
   file_ = Descriptor();
 }
 
+/// A file that cannot lose its first name does not keep the second.
+void TemporaryFile::drop_first_name() {
+  if (::unlink(name_.c_str()) != 0) {
+    const int error = errno;
+    ::unlink(target_.c_str());
+    fail_on_disk(name_, "remove", error);
+  }
+  published_ = true;
+}
+
 void TemporaryFile::take_name() {
   if (existing_ == ExistingFile::kept) {
-    published_ = link_at(name_, target_);
-    if (published_) return remove_file(name_);  // its first name
+    if (link_at(name_, target_)) return drop_first_name();
     replaced_file(target_, existing_);
   }
   if (::rename(name_.c_str(), target_.c_str()) != 0) fail_on_disk(name_, "rename", errno);

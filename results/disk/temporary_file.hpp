@@ -37,6 +37,7 @@ class TemporaryFile {
 
  private:
   void take_name();
+  void drop_first_name();
 
   std::string target_, name_;
   ExistingFile existing_;

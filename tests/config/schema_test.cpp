@@ -35,6 +35,8 @@ const std::vector<std::string> cross_field_messages{
     "at this acceleration and frequency",
     "trials move hard spheres: a packing that overlaps",
     "nothing settles",
+    "an order is that of poured spheres",
+    "can reach below the floor",
     "this start is at rest",
     "skipping needs trials that only fall",
     "skipping does not see the upward trials",

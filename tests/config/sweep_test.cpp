@@ -181,4 +181,52 @@ TEST_CASE("A parsed sweep has the scene of every point") {
   CHECK(alone.points == std::vector<Scene>{alone.scene.value()});
 }
 
+TEST_CASE("Relaxations are null at points of discrete elements") {
+  const std::string engines = R"("/engine": ["monte_carlo", {"discrete_element": {}}], )";
+  const auto faults = [&](const std::string& values) {
+    return lines(parse_scene(scene_with(R"({"zip": {)" + engines + values + "}}")).faults);
+  };
+  CHECK(faults(R"("/relax": [{"polar": {"max_step": 0.1}}, null])").empty());
+  CHECK(faults(R"("/relax": [{"polar": {}}, {"polar": {}}])").find("give null here") !=
+        std::string::npos);
+  CHECK(faults(R"("/relax": [null, null])").find("/sweep/zip/~1relax/0") != std::string::npos);
+}
+
+TEST_CASE("The law of contacts decides the steps of a contact at each point") {
+  const auto points = [](const std::string& settings, const std::string& swept) {
+    const std::string grains = scene_with(swept);
+    const std::string text = grains.substr(0, grains.size() - 1) +
+                             R"(, "engine": {"discrete_element": {)" + settings + "}}}";
+    const Scene scene = scene_of(text);
+    CHECK(scene_of(resolved(scene).dump()) == scene);
+    std::vector<double> steps;
+    for (const Scene& point : point_scenes(scene)) steps.push_back(steps_of_contact(*point.grains));
+    return steps;
+  };
+  const std::string laws =
+      R"("/engine/discrete_element/contact": [{"walton_braun": {}}, {"linear_spring_dashpot": {}}])";
+  CHECK(points("", "{" + laws + "}") == std::vector<double>{40, 160});
+  CHECK(points(R"("steps_per_contact": 40)", "{" + laws + "}") == std::vector<double>{40, 40});
+  CHECK(points("", R"({"/engine/discrete_element/steps_per_contact": [50, 80], )" + laws + "}") ==
+        std::vector<double>{50, 50, 80, 80});
+}
+
+TEST_CASE("Points observe by default the kinds that they have") {
+  const auto names = [](const std::string& further) {
+    const std::string kinds =
+        R"("/spheres": [[{"name": "a", "count": 90, "diameter": 1}, {"name": "b", "count": 9, "diameter": 2}],
+                        [{"name": "a", "count": 90, "diameter": 1}, {"name": "c", "count": 9, "diameter": 2}],
+                        64])";
+    const std::string text = scene_with("{" + kinds + "}");
+    const Scene scene = scene_of(text.substr(0, text.size() - 1) + further + "}");
+    CHECK(scene_of(resolved(scene).dump()) == scene);
+    std::vector<std::string> last;
+    for (const Scene& point : point_scenes(scene))
+      last.push_back(label(point.observables.back()).name);
+    return last;
+  };
+  CHECK(names("") == std::vector<std::string>{"height_b", "height_c", "bulk_fraction"});
+  CHECK(names(R"(, "observe": ["mean_height"])") == std::vector<std::string>(3, "mean_height"));
+}
+
 }  // namespace jostle

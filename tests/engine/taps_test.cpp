@@ -145,6 +145,22 @@ TEST_CASE("a shake offsets spheres inside its disc and counts those it could not
   CHECK(excite(column, Shake{0, 0.2, 3}, random).lateral_offsets_dropped == 1);
 }
 
+TEST_CASE("a shake moves grains that press into the floor, a wall and each other") {
+  RandomStream random(stream_key(11, 0, 0, Purpose::tap));
+  const Vec3 pressed{0.4998, 5, 0.4999}, neighbour{1.4997, 5, 0.4999};
+  int dropped = 0;
+  for (int i = 0; i < 200; ++i) {
+    Packing packing{WalledBox{10, 10}, {pressed, neighbour, {6, 6, 0.4999}}};
+    dropped += static_cast<int>(excite(packing, Shake{0, 0.2, 20}, random).lateral_offsets_dropped);
+    CHECK(packing.centres[0].x >= pressed.x);
+    const double gap = std::hypot(packing.centres[1].x - packing.centres[0].x,
+                                  packing.centres[1].y - packing.centres[0].y);
+    CHECK(gap >= neighbour.x - pressed.x);
+    CHECK(packing.centres[2].x != 6);
+  }
+  CHECK(dropped < 200);  // the sphere between wall and neighbour may find no room
+}
+
 TEST_CASE("a shake takes spheres in random order, so that their numbers decide nothing") {
   // One sphere at a wall, one just beside it with room beyond: if that goes first, the one at the
   // wall finds room more often. In the order of numbers its share of dropped offsets is 0.955 as

@@ -242,6 +242,9 @@ TEST_CASE("the time step is that of the lightest pair, or of the lightest sphere
                                           {"lead", 2, ListedDiameters{{0.5, 3}}, 8}};
   CHECK(lightest_masses(kinds).sphere == 0.125);
   CHECK(lightest_masses(kinds).pair == Approx(0.125 / 1.125));  // a sphere of 0.5 d and density 8
+  // Drawn diameters may be the least: a scene is refused only where none of its beds can be run.
+  CHECK(lightest_masses(std::vector<MixtureKind>{{"drawn", 9, UniformDiameter{0.5, 2}}}).sphere ==
+        0.125);
   for (const ContactLaw& law : {ContactLaw{WaltonBraun{}}, ContactLaw{LinearSpringDashpot{}}}) {
     DiscreteElement engine;
     engine.spheres = law;

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "engine/bed/slab.hpp"
@@ -98,6 +100,33 @@ TEST_CASE("A crystal between walls leaves out the sites that do not fit") {
   CHECK_THROWS_WITH(crystal({Lattice::hcp}, WalledBox{1, 1}, 3), Catch::Contains("too narrow"));
   CHECK_THROWS_WITH(crystal({Lattice::hcp, true}, WalledBox{6, 6}, 3),
                     Catch::Contains("periodic sides"));
+}
+
+// Whatever site of a layer's lattice lies between the walls is taken.
+TEST_CASE("A crystal between walls has every site that fits") {
+  const auto sites = GENERATE(std::pair(5.0, 23 + 22), std::pair(8.0, 0), std::pair(6.3, 0));
+  const auto [width, two_layers] = sites;
+  const Container box = WalledBox{width, width};
+  const Packing packing = crystal({Lattice::hcp}, box, 400);
+  const double top = packing.centres.back().z;
+  const auto has = [&](Vec3 site) {
+    return std::ranges::any_of(packing.centres,
+                               [&](Vec3 centre) { return norm_squared(centre - site) < 1e-12; });
+  };
+  int lowest = 0;
+  for (const Vec3 centre : packing.centres) {
+    lowest += centre.z < 1.4;
+    if (centre.z > top - 0.1) continue;  // the last layer is not full
+    for (int k = 0; k < 6; ++k) {
+      const double angle = std::numbers::pi / 3 * k;
+      const Vec3 neighbour = centre + Vec3{std::cos(angle), std::sin(angle), 0};
+      CAPTURE(width, neighbour.x, neighbour.y, neighbour.z);
+      const bool fits = std::min(neighbour.x, neighbour.y) >= 0.5 - 1e-9 &&
+                        std::max(neighbour.x, neighbour.y) <= width - 0.5 + 1e-9;
+      if (fits) CHECK(has(neighbour));
+    }
+  }
+  if (two_layers > 0) CHECK(lowest == two_layers);
 }
 
 }  // namespace jostle
