@@ -285,7 +285,7 @@ std::variant<Fit, Refusal> fit_at_limit(const Model& model, const Curve& curve,
   }
   restore_covariance(model, limit, found, fit);
   fit.limit = {limit.law->name(), limit.law->formula(),
-               "The least squares of " + model.name() + " lie at its limit " +
+               "The sum of squared residuals of " + model.name() + " is smallest at its limit " +
                    limit.law->formula() + ": " + limit.approach +
                    ". The data determine this law of " + std::to_string(found.n_free) +
                    (found.n_free == 1 ? " parameter" : " parameters") + ", and not " +

@@ -86,6 +86,11 @@ bool is_lopsided(double value, double low, double high, double least, double mos
 std::string limits_text(double low, double high, int digits) {
   const bool has_lower = std::isfinite(low), has_upper = std::isfinite(high);
   if (has_lower && has_upper) {
+    // A unit of the last digit is a twentieth of the width at most.
+    constexpr int most_digits = std::numeric_limits<double>::max_digits10;
+    const double larger = std::max(std::abs(low), std::abs(high)), part = (high - low) / 20;
+    if (part > 0)
+      digits = std::clamp(exponent_of(larger) - exponent_of(part) + 1, digits, most_digits);
     digits = distinguishing_digits(low, high, digits);
     return number_text(low, digits) + " to " + number_text(high, digits);
   }
@@ -93,9 +98,19 @@ std::string limits_text(double low, double high, int digits) {
   return has_upper ? "< " + number_text(high, digits) : "no limit";
 }
 
+namespace {
+
+/// True if a number as large is printed with so many decimals, and without a power of ten.
+bool is_plain(double larger, int decimals) {
+  constexpr double smallest = 1e-3, largest = 1e7;
+  constexpr int most_decimals = 6;
+  return (larger >= smallest || decimals <= most_decimals) && larger < largest;
+}
+
+}  // namespace
+
 std::string value_with_error(double value, double error, double scale) {
   constexpr int most_digits = 6;
-  constexpr double smallest_plain = 1e-3, largest_plain = 1e7;
   constexpr double noise = 64 * std::numeric_limits<double>::epsilon(), rounding = 1e-11;
   if (!std::isfinite(value)) return number_text(value, most_digits);
   const double larger = std::max(std::abs(value), error > 0 ? error : 0.0);
@@ -104,24 +119,23 @@ std::string value_with_error(double value, double error, double scale) {
   if (!has_error) return number_text(value, most_digits);
   if (std::isinf(error)) return "no limit";
   const int decimals = 1 - exponent_of(error);
-  const bool short_enough = larger >= smallest_plain || decimals <= most_digits;
-  if (short_enough && larger < largest_plain) return in_last_digits(value, error, decimals);
+  if (is_plain(larger, decimals)) return in_last_digits(value, error, decimals);
   const int power = exponent_of(larger);
   const double unit = std::pow(10.0, power);
   return in_last_digits(value / unit, error / unit, decimals + power) + power_text(power);
 }
 
 std::string value_with_limits(double value, double low, double high) {
-  constexpr int most_decimals = 6, digits = 4;
-  constexpr double largest_plain = 1e7;
   const double upper_width = high - value, lower_width = value - low;
-  const int decimals = std::max(0, 1 - exponent_of(std::min(upper_width, lower_width)));
-  const bool plain =
-      decimals <= most_decimals && std::max(std::abs(value), upper_width) < largest_plain;
+  const double larger = std::max({std::abs(value), upper_width, lower_width});
+  const int decimals = 1 - exponent_of(std::min(upper_width, lower_width));
+  const int power = is_plain(larger, decimals) ? 0 : exponent_of(larger);
   const auto text = [&](double number) {
-    return plain ? fixed(number, decimals) : number_text(number, digits);
+    return fixed(number / std::pow(10.0, power), std::max(0, decimals + power));
   };
-  return text(value) + "(+" + text(upper_width) + "/-" + text(lower_width) + ")";
+  const std::string with_limits =
+      text(value) + "(+" + text(upper_width) + "/-" + text(lower_width) + ")";
+  return power == 0 ? with_limits : with_limits + power_text(power);
 }
 
 }  // namespace jostle::inline fitting

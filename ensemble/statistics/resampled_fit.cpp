@@ -5,9 +5,11 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "engine/bed/random.hpp"
 #include "ensemble/parallel.hpp"
+#include "fitting/intervals/distributions.hpp"
 
 namespace jostle::inline ensemble {
 
@@ -81,7 +83,15 @@ Interval central_interval(const std::vector<double>& sorted, double level) {
   return {quantile(sorted, 0.5 * (1 - level)), quantile(sorted, 0.5 * (1 + level))};
 }
 
-void add_parameter(std::vector<double> values, Resampling kind, ResampledErrors& errors) {
+/// The interval of a bootstrap about the value of all realizations, as much longer as Student's t
+/// exceeds the normal quantile, and times `widening`.
+Interval stretched(Interval interval, double value, double widening, double level, double dof) {
+  const double factor = widening * student_two_sided(level, dof) / normal_two_sided(level);
+  return {value - factor * (value - interval.lower), value + factor * (interval.upper - value)};
+}
+
+void add_parameter(std::vector<double> values, double value, Resampling kind,
+                   std::uint32_t realizations, ResampledErrors& errors) {
   const auto n = static_cast<double>(values.size());
   if (values.size() < 2) {
     errors.errors.push_back(std::numeric_limits<double>::infinity());
@@ -89,11 +99,15 @@ void add_parameter(std::vector<double> values, Resampling kind, ResampledErrors&
   }
   // Tukey 1958: leaving one out moves an estimate by 1/(n - 1) of what redrawing it would.
   const double divisor = kind == Resampling::jackknife ? n / (n - 1) : n - 1;
-  errors.errors.push_back(standard_deviation(values, divisor));
-  if (kind != Resampling::bootstrap) return;
+  const double error = standard_deviation(values, divisor);
+  if (kind == Resampling::jackknife) return errors.errors.push_back(error);
+  // Means of M realizations drawn from M have (M - 1)/M of the variance of the mean.
+  const double dof = realizations - 1, widening = std::sqrt(realizations / dof);
+  errors.errors.push_back(error * widening);
   std::sort(values.begin(), values.end());
-  errors.middle.push_back(central_interval(values, interval_levels[0]));
-  errors.central.push_back(central_interval(values, interval_levels[1]));
+  for (auto [level, intervals] : {std::pair(interval_levels[0], &errors.middle),
+                                  std::pair(interval_levels[1], &errors.central)})
+    intervals->push_back(stretched(central_interval(values, level), value, widening, level, dof));
 }
 
 }  // namespace
@@ -126,7 +140,8 @@ ResampledErrors resample(const Model& model, const RealizationCurves& curves, co
       if (parameters) values.push_back((*parameters)[j]);
     }
     result.failed = result.resamples - static_cast<std::uint32_t>(values.size());
-    add_parameter(std::move(values), options.kind, result);
+    add_parameter(std::move(values), fit.estimates[j].value, options.kind, curves.realizations,
+                  result);
   }
   return result;
 }

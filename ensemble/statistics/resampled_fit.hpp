@@ -25,7 +25,7 @@ struct ResamplingOptions {
 /// One value a parameter each, [n_parameters].
 struct ResampledErrors {
   std::vector<double> errors;     // standard errors
-  std::vector<Interval> middle;   // central 68 % of parameters in a bootstrap; else empty
+  std::vector<Interval> middle;   // 68 % limits of a bootstrap, by Student's t; else empty
   std::vector<Interval> central;  // 95 % limits
   std::uint32_t resamples = 0;    // refitted
   std::uint32_t failed = 0;       // resamples without a settled fit: not counted in the errors

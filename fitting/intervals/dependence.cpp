@@ -2,12 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "fitting/numbers.hpp"
 #include "fitting/solver/decompositions.hpp"
 
 namespace jostle::inline fitting {
+
+std::vector<std::size_t> in_order_of_t(const std::vector<double>& t) {
+  std::vector<std::size_t> order(t.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return t[i]; });
+  return order;
+}
 
 namespace {
 
@@ -153,11 +161,11 @@ Eigen::MatrixXd gains(const Eigen::MatrixXd& jacobian, const Curve& curve) {
   return weights;
 }
 
-// The correlation of a realization's noise from one point to the next, over all realizations; in
-// [0, 1). A level taken off n values lowers it by about (1 + 3 rho)/n (Kendall 1954,
+// The correlation of a realization's noise from one point to the next in t, over all realizations;
+// in [0, 1). A level taken off n values lowers it by about (1 + 3 rho)/n (Kendall 1954,
 // doi:10.1093/biomet/41.3-4.403).
-double noise_memory(const Curve& curve) {
-  const std::size_t m = curve.n_realizations, n = curve.t.size();
+double noise_memory(const Curve& curve, const std::vector<std::size_t>& order) {
+  const std::size_t m = curve.n_realizations;
   double products = 0, squares = 0, pairs = 0;
   for (std::size_t r = 0; r < m; ++r) {
     const auto noise = [&](std::size_t i) {
@@ -166,9 +174,10 @@ double noise_memory(const Curve& curve) {
         n_others += curve.present[i * m + realization];
       return (curve.values[i * m + r] - curve.x[i] - curve.offsets[r]) * n_others;
     };
-    for (std::size_t i = 1; i < n; ++i) {
-      if (curve.present[(i - 1) * m + r] == 0 || curve.present[i * m + r] == 0) continue;
-      const double previous = noise(i - 1), now = noise(i);
+    for (std::size_t k = 1; k < order.size(); ++k) {
+      const std::size_t last = order[k - 1], i = order[k];
+      if (curve.present[last * m + r] == 0 || curve.present[i * m + r] == 0) continue;
+      const double previous = noise(last), now = noise(i);
       products += previous * now;
       squares += (previous * previous + now * now) / 2;
       ++pairs;
@@ -181,9 +190,11 @@ double noise_memory(const Curve& curve) {
 }
 
 // Variance of the sum of noise with that memory and these weights, in variances of one value.
-double variance_of_sum(const std::vector<double>& weights, double memory) {
+double variance_of_sum(const std::vector<double>& weights, double memory,
+                       const std::vector<std::size_t>& order) {
   double sum = 0, remembered = 0;
-  for (const double weight : weights) {
+  for (const std::size_t i : order) {
+    const double weight = weights[i];
     remembered = memory * remembered + weight;
     sum += weight * (2 * remembered - weight);
   }
@@ -196,7 +207,8 @@ double gapped_dof(const Eigen::MatrixXd& jacobian, const Curve& curve) {
   const std::size_t m = curve.n_realizations;
   const auto count = static_cast<double>(m);
   const Eigen::MatrixXd gain = gains(jacobian, curve);
-  const double memory = noise_memory(curve);
+  const std::vector<std::size_t> order = in_order_of_t(curve.t);
+  const double memory = noise_memory(curve, order);
   double least = count - 1;
   for (Eigen::Index j = 0; j < gain.cols(); ++j) {
     std::vector<double> changes(m, 0.0), noise(m, 0.0);
@@ -214,7 +226,7 @@ double gapped_dof(const Eigen::MatrixXd& jacobian, const Curve& curve) {
         if (curve.present[i * m + r] != 0) shares[r][i] = g / (present - 1);
       }
     }
-    for (std::size_t r = 0; r < m; ++r) noise[r] = variance_of_sum(shares[r], memory);
+    for (std::size_t r = 0; r < m; ++r) noise[r] = variance_of_sum(shares[r], memory, order);
     double all = 0, of_offsets = 0, of_noise = 0;
     for (std::size_t r = 0; r < m; ++r) {
       all += changes[r] * changes[r];

@@ -44,6 +44,9 @@ using Curvature = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& direction
 DependentErrors clustered_errors(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& deviations,
                                  const Curvature& curvature = nullptr);
 
+/// The points of a curve, [n_points], in order of t; of equal t the earlier first.
+std::vector<std::size_t> in_order_of_t(const std::vector<double>& t);
+
 /// The weight that the weighted mean of the residuals deserves against their other components: the
 /// root of the variance of one of these over that of the mean. Below 1 where realizations keep to
 /// levels of their own, which all points of the mean curve share. A profile without this weight has

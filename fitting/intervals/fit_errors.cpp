@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "fitting/intervals/dependence.hpp"
 #include "fitting/intervals/distributions.hpp"
@@ -28,15 +27,6 @@ Eigen::MatrixXd deviations(const Curve& curve) {
     }
   }
   return matrix;
-}
-
-std::vector<Eigen::Index> in_order_of_t(const std::vector<double>& t) {
-  std::vector<Eigen::Index> order(t.size());
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
-    return t[static_cast<std::size_t>(a)] < t[static_cast<std::size_t>(b)];
-  });
-  return order;
 }
 
 DependentErrors errors_of_realizations(const Curve& curve, const LinearProblem& problem) {

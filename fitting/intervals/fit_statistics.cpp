@@ -2,23 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 #include "fitting/solver/decompositions.hpp"
 
 namespace jostle::inline fitting {
 
 namespace {
-
-std::vector<double> in_order_of_t(const Curve& curve, const Eigen::VectorXd& weighted) {
-  std::vector<std::size_t> order(curve.t.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return curve.t[a] < curve.t[b]; });
-  std::vector<double> sorted;
-  for (std::size_t i : order) sorted.push_back(weighted[static_cast<Eigen::Index>(i)]);
-  return sorted;
-}
 
 // Sum of squares about the weighted mean, of X or ln X.
 double total_sum(const Curve& curve, bool logarithmic) {
@@ -82,7 +72,9 @@ void fill_statistics(const Curve& curve, const Eigen::VectorXd& weighted, Fit& f
   fit.reduced_chi2 = fit.dof > 0 ? fit.residual_sum / static_cast<double>(fit.dof)
                                  : std::numeric_limits<double>::infinity();
   fit.r2 = 1 - fit.residual_sum / total_sum(curve, logarithmic);
-  const std::vector<double> sorted = in_order_of_t(curve, weighted);
+  std::vector<double> sorted;
+  for (const std::size_t i : in_order_of_t(curve.t))
+    sorted.push_back(weighted[static_cast<Eigen::Index>(i)]);
   fit.runs = runs_test(sorted);
   fit.effective_size = effective_sample_size(sorted);
   fit.weighted_size = weighted_size(curve, logarithmic);

@@ -172,7 +172,7 @@ void remark_on_memory(const Curve& curve, const std::string& t_unit, Fit& fit) {
        << " independent points";
   if (too_short_for_errors(fit)) {
     text << ", too few for errors and intervals. Fit several realizations; if every point is an "
-            "experiment of its own, fit without memory.";
+            "experiment of its own, fit them as independent points.";
   } else {
     text << "; errors and intervals include this.";
   }
@@ -208,11 +208,12 @@ void remark_on_chi2(Fit& fit) {
     text << "the law misses the curve, or the errors given are too small. Intervals take them as "
             "exact; by the scatter around the law they are "
          << fit.scatter_ratio << " times longer.";
-  } else if (fit.n_realizations > 0) {
+  } else if (fit.n_realizations > 0 && !fit.logarithmic) {
     text << "the points of a realization deviate together, as those of a level of its own do; "
             "errors and intervals include this.";
   } else {
-    text << "the errors given are larger than the scatter of the points.";
+    text << (fit.n_realizations > 0 ? "the errors of the means" : "the errors given")
+         << " are larger than the scatter of the points.";
   }
   fit.remarks.push_back(text.str());
 }

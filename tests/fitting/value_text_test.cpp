@@ -44,8 +44,30 @@ TEST_CASE("a lopsided interval is given by both of its distances") {
   CHECK(value_with_limits(56.04, 45.4, 74.1) == "56(+18/-11)");
   CHECK(value_with_limits(0.5913, 0.5911, 0.5999) == "0.59130(+0.00860/-0.00020)");
   CHECK(value_with_limits(-3, -3.5, 1) == "-3.00(+4.00/-0.50)");
-  CHECK(value_with_limits(2e-9, 1e-9, 1e-8) == "2e-09(+8e-09/-1e-09)");
-  CHECK(value_with_limits(3e8, 2e8, 9e8) == "3e+08(+6e+08/-1e+08)");
+  CHECK(value_with_limits(2e-9, 1e-9, 1e-8) == "2.0(+8.0/-1.0)e-09");
+  CHECK(value_with_limits(3e8, 2e8, 9e8) == "3.0(+6.0/-1.0)e+08");
+  CHECK(value_with_limits(0.65432294, 0.65431942, 0.65446464) ==
+        "0.6543229(+0.0001417/-0.0000035)");
+  CHECK(value_with_limits(3.271615e-4, 3.271597e-4, 3.272323e-4) ==
+        "3.271615(+0.000708/-0.000018)e-04");
+}
+
+// A tenth of the shorter error is the most that a printed value may be off.
+TEST_CASE("a value with two limits is printed to its shorter one") {
+  for (int power = -200; power <= 200; power += 5) {
+    for (const double share : {1e-8, 3e-5, 0.01, 0.7}) {
+      const double value = 6.5432294 * std::pow(10.0, power), lower = share * value;
+      const std::string text = value_with_limits(value, value - lower, value + 40 * lower);
+      const std::size_t power_at = text.find(")e");
+      const double unit =
+          power_at == std::string::npos ? 1 : std::stod("1" + text.substr(power_at + 1));
+      CAPTURE(value, lower, text);
+      CHECK(std::abs(std::stod(text) * unit - value) <= 0.1 * lower);
+      CHECK(std::stod(text.substr(text.find("/-") + 2)) * unit == Approx(lower).epsilon(0.051));
+      CHECK(std::stod(text.substr(text.find("(+") + 2)) * unit ==
+            Approx(40 * lower).epsilon(0.051));
+    }
+  }
 }
 
 TEST_CASE("an interval is lopsided where half of it would reach beyond limits or zero") {
@@ -135,7 +157,10 @@ TEST_CASE("over all decades and signs a text has the value and its error to two 
 
 TEST_CASE("limits are written in words") {
   CHECK(limits_text(0.57431, 0.61, 5) == "0.57431 to 0.61");
-  CHECK(limits_text(0.6093812, 0.6093843, 5) == "0.609381 to 0.609384");
+  CHECK(limits_text(0.6093812, 0.6093843, 5) == "0.6093812 to 0.6093843");
+  CHECK(limits_text(7.99969, 8.00086, 4) == "7.99969 to 8.00086");
+  CHECK(limits_text(-8.00086, -7.99969, 4) == "-8.00086 to -7.99969");
+  CHECK(limits_text(-0.0001, 12345.6, 5) == "-0.0001 to 12346");
   CHECK(limits_text(0.58, 0.58, 5) == "0.58 to 0.58");
   CHECK(limits_text(1, 1 + 3e-16, 5) == "1 to 1.0000000000000002");
   CHECK(limits_text(0.57431, infinity, 5) == "> 0.57431");

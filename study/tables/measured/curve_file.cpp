@@ -173,20 +173,46 @@ std::size_t drop_rows(Rows& rows, std::size_t m, std::size_t least) {
   return dropped;
 }
 
-std::vector<std::string> names_of(const ColumnRoles& roles, const std::vector<std::size_t>& kept) {
+/// The realizations of a file and the names of their columns.
+struct Realizations {
+  Rows rows;
   std::vector<std::string> names;
-  for (const std::size_t r : kept) names.push_back(roles.names[roles.x[r]]);
-  return names;
-}
+
+  std::size_t size() const { return names.size(); }
+  std::vector<std::string> names_of(const std::vector<std::size_t>& chosen) const {
+    std::vector<std::string> found;
+    for (const std::size_t r : chosen) found.push_back(names[r]);
+    return found;
+  }
+  void keep(const std::vector<std::size_t>& kept) {
+    keep_realizations(kept, size(), rows);
+    names = names_of(kept);
+  }
+  void keep_those_with_values(std::vector<std::string>& notes) {
+    const std::vector<std::size_t> kept = realizations_with_values(rows, size());
+    for (std::size_t r = 0; r < size(); ++r) {
+      if (std::ranges::find(kept, r) != kept.end()) continue;
+      notes.push_back(fmt::format("Realization {} has no value in the rows that are used.",
+                                  printable(names[r], 60)));
+    }
+    keep(kept);
+  }
+};
 
 Curve mean_of(const std::string& path, Rows rows, const ColumnRoles& roles, Gaps gaps,
               std::vector<std::string>& notes) {
-  const std::size_t m = roles.x.size();
-  std::vector<std::size_t> kept = realizations_with_values(rows, m);
+  Realizations read{std::move(rows), {}};
+  for (const std::size_t column : roles.x) read.names.push_back(roles.names[column]);
+  const std::size_t m = read.size();
+  const std::vector<std::size_t> distinct = distinct_columns(read.rows.values, m);
+  if (distinct.size() < m) {
+    notes.push_back(copies_text(m - distinct.size(), distinct.size()) + ".");
+    read.keep(distinct);
+  }
+  if (read.size() == 1) return mean_of_present(std::move(read.rows.t), read.rows.values, 1);
   if (gaps == Gaps::use_others) {
     // A lone value shows no scatter, and so no error.
-    const std::size_t alone = drop_rows(rows, m, 2);
-    kept = realizations_with_values(rows, m);
+    const std::size_t alone = drop_rows(read.rows, read.size(), 2);
     if (alone > 0) {
       notes.push_back(
           fmt::format("{} with a value of one realization alone: left out, for one "
@@ -194,16 +220,11 @@ Curve mean_of(const std::string& path, Rows rows, const ColumnRoles& roles, Gaps
                       counted_rows(alone)));
     }
   }
-  for (std::size_t r = 0; r < m; ++r) {
-    if (std::ranges::find(kept, r) != kept.end()) continue;
-    notes.push_back(fmt::format("Realization {} has no value in the rows that are used.",
-                                printable(roles.names[roles.x[r]], 60)));
-  }
-  keep_realizations(kept, m, rows);
+  read.keep_those_with_values(notes);
   const auto n_missing = static_cast<std::size_t>(
-      std::ranges::count_if(rows.values, [](double x) { return std::isnan(x); }));
+      std::ranges::count_if(read.rows.values, [](double x) { return std::isnan(x); }));
   if (n_missing > 0 && gaps == Gaps::drop_row) {
-    const std::size_t dropped = drop_rows(rows, kept.size(), kept.size());
+    const std::size_t dropped = drop_rows(read.rows, read.size(), read.size());
     notes.push_back(
         fmt::format("{} in which a realization has no value: left out.", counted_rows(dropped)));
   } else if (n_missing > 0) {
@@ -211,28 +232,23 @@ Curve mean_of(const std::string& path, Rows rows, const ColumnRoles& roles, Gaps
         fmt::format("{} of {} values are missing: each mean is over the realizations present, "
                     "corrected for the "
                     "offsets between realizations.",
-                    n_missing, rows.values.size()));
+                    n_missing, read.rows.values.size()));
   }
-  if (kept.size() < 2) {
+  if (read.size() < 2) {
     throw BadInput(fmt::format(
         "{}: {} of {} realizations have values in the same rows. A fit needs two; fit one column "
         "as t, X.",
-        path, kept.size(), m));
+        path, read.size(), m));
   }
-  const auto groups = linked_groups(rows.values, kept.size());
+  const auto groups = linked_groups(read.rows.values, read.size());
   if (groups.size() > 1) {
     throw BadInput(fmt::format(
         "{}: the realizations {} have no row in common with {}, so the offset between them is not "
         "known. Fit each group on its own: choose its t by a range, or its columns in a file.",
-        path, printable(fmt::format("{}", fmt::join(names_of(roles, groups[0]), ", ")), 100),
-        printable(fmt::format("{}", fmt::join(names_of(roles, groups[1]), ", ")), 100)));
+        path, printable(fmt::format("{}", fmt::join(read.names_of(groups[0]), ", ")), 100),
+        printable(fmt::format("{}", fmt::join(read.names_of(groups[1]), ", ")), 100)));
   }
-  const std::vector<std::size_t> distinct = distinct_columns(rows.values, kept.size());
-  if (distinct.size() < kept.size()) {
-    notes.push_back(copies_text(kept.size() - distinct.size(), distinct.size()) + ".");
-    keep_realizations(distinct, kept.size(), rows);
-  }
-  return mean_of_present(std::move(rows.t), std::move(rows.values), distinct.size());
+  return mean_of_present(std::move(read.rows.t), std::move(read.rows.values), read.size());
 }
 
 }  // namespace

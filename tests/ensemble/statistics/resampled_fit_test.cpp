@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "fitting/intervals/distributions.hpp"
 #include "fitting/models/models.hpp"
 #include "tests/ensemble/noise.hpp"
 #include "tests/test_files.hpp"
@@ -85,13 +86,45 @@ TEST_CASE("The bootstrap of a mean tends to its limit") {
   const Fit fitted = std::get<Fit>(fit(model, mean_curve(curves)));
   const ResampledErrors errors =
       resample(model, curves, fitted, {.kind = Resampling::bootstrap, .count = 4000});
-  const double limit = json["bootstrap_se_of_mean_limit"];
+  // A bootstrap of n values tends to (n - 1)/n of the mean's variance.
+  const double limit = json["bootstrap_se_of_mean_limit"].get<double>() * std::sqrt(10.0 / 9);
+  CHECK(limit == Approx(json["jackknife_se_of_mean"].get<double>()).epsilon(1e-9));
   // The error of an error from n resamples is 1/sqrt(2 n) of it.
   CHECK(std::abs(errors.errors.at(0) - limit) <= 3 * limit / std::sqrt(2 * 4000.0));
   const double mean = json["mean"];
-  CHECK(errors.middle.at(0).lower == Approx(mean - limit).margin(0.1 * limit));
-  CHECK(errors.middle.at(0).upper == Approx(mean + limit).margin(0.1 * limit));
-  CHECK(errors.central.at(0).lower == Approx(mean - 1.96 * limit).margin(0.2 * limit));
+  const double of_68 = half_width(limit, 9), of_95 = half_width(limit, 9, 0.95);
+  CHECK(errors.middle.at(0).lower == Approx(mean - of_68).margin(0.1 * limit));
+  CHECK(errors.middle.at(0).upper == Approx(mean + of_68).margin(0.1 * limit));
+  CHECK(errors.central.at(0).lower == Approx(mean - of_95).margin(0.2 * limit));
+}
+
+TEST_CASE("The limits of a bootstrap hold the truth as often as stated, of few realizations too",
+          "[statistics]") {
+  // A level, of normal realizations: the fit of the law to the mean is the mean.
+  const PowerOfLevel model(1);
+  constexpr int ensembles = 400;
+  for (const std::uint32_t m : {2u, 3u, 4u, 8u}) {
+    int held_68 = 0, held_95 = 0;
+    double ratio = 0;
+    for (std::uint64_t i = 0; i < ensembles; ++i) {
+      RandomStream random = test_stream(1000 * m + i);
+      std::vector<double> levels;
+      for (std::uint32_t r = 0; r < m; ++r) levels.push_back(5 + noise(random));
+      const RealizationCurves curves = shifted_lines(levels);
+      const Fit fitted = std::get<Fit>(fit(model, mean_curve(curves), {.profiles = false}));
+      const ResampledErrors drawn =
+          resample(model, curves, fitted, {.kind = Resampling::bootstrap, .count = 400, .seed = i});
+      held_68 += drawn.middle[0].lower <= 5 && 5 <= drawn.middle[0].upper;
+      held_95 += drawn.central[0].lower <= 5 && 5 <= drawn.central[0].upper;
+      ratio += drawn.errors[0] / resample(model, curves, fitted, {}).errors[0] / ensembles;
+    }
+    CAPTURE(m, held_68, held_95, ratio);
+    CHECK(std::abs(ratio - 1) < 0.03);
+    CHECK(held_95 >= 0.90 * ensembles);
+    CHECK(held_95 <= 0.995 * ensembles);
+    CHECK(held_68 >= 0.58 * ensembles);
+    CHECK(held_68 <= 0.85 * ensembles);
+  }
 }
 
 TEST_CASE("Resampled errors do not depend on the number of threads") {

@@ -46,9 +46,15 @@ bool is_missing(const Ensemble& ensemble, int r, int k, double uniform) {
   return ensemble.missing == Missing::drop_out && r >= (ensemble.m + 1) / 2 && k >= 50 + 10 * r;
 }
 
-Curve curve_of(const Ensemble& ensemble, const Law& law, const Model& model, int number) {
+/// [n_t] and [n_t, m], NaN where a value is missing.
+struct Measured {
+  std::vector<double> t, values;
+};
+
+Measured measured(const Ensemble& ensemble, const Law& law, const Model& model, int number) {
   Noise noise(static_cast<std::uint64_t>(number));
-  std::vector<double> states(static_cast<std::size_t>(ensemble.m)), offsets = states, t, values;
+  std::vector<double> states(static_cast<std::size_t>(ensemble.m)), offsets = states;
+  auto [t, values] = Measured{};
   for (double& state : states) state = noise();
   for (double& offset : offsets) offset = ensemble.offset * noise();
   for (int k = 0; k < 200; ++k) {
@@ -67,6 +73,11 @@ Curve curve_of(const Ensemble& ensemble, const Law& law, const Model& model, int
     t.push_back(time);
     values.insert(values.end(), row.begin(), row.end());
   }
+  return {std::move(t), std::move(values)};
+}
+
+Curve curve_of(const Ensemble& ensemble, const Law& law, const Model& model, int number) {
+  auto [t, values] = measured(ensemble, law, model, number);
   return mean_of_present(std::move(t), std::move(values), static_cast<std::size_t>(ensemble.m));
 }
 
@@ -121,6 +132,31 @@ TEST_CASE("Realizations with gaps: intervals hold the truth at their stated rate
   check(kww, {4, 0, 1, Missing::random}, 15);
   check(kww, {4, 0.99, 1, Missing::drop_out}, 15);
   check(kww, {10, 0, 0, Missing::drop_out}, 15);
+}
+
+TEST_CASE("Realizations with gaps: the order of the points changes no interval") {
+  const auto model = make_model("kww");
+  constexpr std::size_t m = 5;
+  const Measured sorted = measured({m, 0.97, 1, Missing::drop_out}, kww, *model, 1);
+  Measured mixed;
+  const std::size_t n = sorted.t.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t i = 37 * k % n;  // no neighbour stays one
+    mixed.t.push_back(sorted.t[i]);
+    const auto row = sorted.values.begin() + static_cast<std::ptrdiff_t>(i * m);
+    mixed.values.insert(mixed.values.end(), row, row + m);
+  }
+  const auto first = fit(*model, mean_of_present(sorted.t, sorted.values, m)),
+             second = fit(*model, mean_of_present(mixed.t, mixed.values, m));
+  const Fit &a = std::get<Fit>(first), &b = std::get<Fit>(second);
+  CHECK(b.error_dof == Approx(a.error_dof).epsilon(1e-6));
+  CHECK(a.error_dof < 3.5);
+  for (std::size_t j = 0; j < a.estimates.size(); ++j) {
+    const Interval &of_a = a.estimates[j].intervals[1], &of_b = b.estimates[j].intervals[1];
+    const double width = of_a.upper - of_a.lower;
+    CHECK(of_b.lower == Approx(of_a.lower).margin(1e-3 * width));
+    CHECK(of_b.upper == Approx(of_a.upper).margin(1e-3 * width));
+  }
 }
 
 TEST_CASE("Six realizations, of which half leave, with a memory of half the curve", "[slow]") {

@@ -143,6 +143,14 @@ TEST_CASE("realizations that are copies count once") {
   CHECK(repeated.curve.x == std::vector<double>{2, 3, 5});
   CHECK(repeated.notes.at(0) ==
         "2 of the 3 realizations repeat the series of another, so 1 realization is used.");
+  // Rows that a copy alone shares with its original have one value.
+  const MeasuredCurve ends =
+      curve_of("t,a,b,c\n1,2,2,5\n2,3,3,4\n3,5,5,7\n4,6,6,\n5,7,7,\n", several);
+  CHECK(ends.curve.n_realizations == 2);
+  CHECK(ends.curve.t == std::vector<double>{1, 2, 3});
+  CHECK(ends.curve.x == std::vector<double>{3.5, 3.5, 6});
+  REQUIRE(ends.notes.size() == 2);
+  CHECK(contains(ends.notes[1], "2 rows with a value of one realization alone"));
   // Constant columns may agree by chance.
   CHECK(curve_of("t,a,b,c\n1,2,2,1\n2,2,2,3\n", several).curve.n_realizations == 3);
 }
