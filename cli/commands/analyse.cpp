@@ -173,12 +173,13 @@ std::string file_or_kind_fault(const std::string& text) {
 }
 
 void add_steady(AnalysisKinds& kinds, int& code) {
-  Command kind = kinds.add("steady", "Value, deviation and memory of the last taps",
-                           [&code](AnalyseArguments& arguments) {
-                             Analyses analyses;
-                             analyses.steady = requests(arguments, steady_settings(arguments));
-                             code = run_analyses(arguments, analyses);
-                           });
+  Command kind =
+      kinds.add("steady", "Mean, standard deviation and autocorrelation time of the last taps",
+                [&code](AnalyseArguments& arguments) {
+                  Analyses analyses;
+                  analyses.steady = requests(arguments, steady_settings(arguments));
+                  code = run_analyses(arguments, analyses);
+                });
   kinds.add_last(kind, "Taps at the end (default: a quarter)");
   add_example(kind, "jostle analyse quickstart.h5 steady --observable mean_height --last 50");
 }
@@ -220,7 +221,8 @@ void add_ageing(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
   kinds.add_option(kind, "--waiting-times", a.waiting_times,
                    "Taps t_W, separated by commas (default: 0 and two per decade)",
                    [](Option option) { option.separated_by(','); });
-  kinds.add_option(kind, "--lags", a.lags, "Taps t, likewise (default: ten per decade)",
+  kinds.add_option(kind, "--lags", a.lags,
+                   "Lags t in taps, separated by commas (default: ten per decade)",
                    [](Option option) { option.separated_by(',').limit(1, 1000000000); });
   add_example(kind, "jostle analyse fig5.h5 ageing --observable mean_height --waiting-times 10,99");
 }
@@ -270,7 +272,7 @@ void add_ordering(AnalysisKinds& kinds, AnalyseArguments& a, int& code) {
                    "Consecutive taps at or above the threshold (default: 10)",
                    [](Option option) { option.limit(1, 1000000000); });
   kinds.add_option(kind, "--equilibrium", a.equilibrium,
-                   "The observable whose last taps are compared (default: the same)");
+                   "The observable whose last taps are compared (default: that of --observable)");
   kinds.add_last(kind, "Taps at the end that are compared (default: a quarter)");
   add_example(kind, "jostle analyse lifts.h5 ordering --observable grown_layers --threshold 5");
 }

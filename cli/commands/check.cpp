@@ -46,10 +46,11 @@ void print_size(const LoadedScene& loaded, const Study& study) {
   std::string labels;
   for (const auto& point :
        std::span(study.points).first(std::min(study.points.size(), most_labels))) {
-    if (!point.label.empty()) labels += fmt::format("  {}\n", point.label);
+    if (!point.label.empty()) labels += fmt::format("    {}\n", point.label);
   }
+  if (!labels.empty()) labels = "  sweep points\n" + labels;
   if (study.points.size() > most_labels) {
-    labels += fmt::format("  ... and {} more\n", study.points.size() - most_labels);
+    labels += fmt::format("    ... and {} more\n", study.points.size() - most_labels);
   }
   print_wrapped(labels);
   if (!loaded.scene.until.targets.empty()) {
@@ -155,13 +156,14 @@ void add_options(Command& command, CheckArguments& arguments) {
   command.add_threads(arguments.threads,
                       "Threads of the estimate (default: the CPUs this process may use)");
   command.add_flag("--no-pilot", arguments.no_pilot,
-                   "Leave out the short trial that time and memory are estimated from");
+                   "Run no pilot: estimates without time and memory");
 }
 
 }  // namespace
 
 void add_check(Command& app, int& code) {
-  Command command = app.add_command("check", "Report what a scene means and what it will cost");
+  Command command =
+      app.add_command("check", "Resolve a scene and estimate its time, memory and disk");
   auto arguments = std::make_shared<CheckArguments>();
   add_options(command, *arguments);
   command.footer(

@@ -162,8 +162,10 @@ void add_cost(Command& app, int& code) {
       .file_to_write()
       .offers_files({"h5"});
   command.add_flag("--resume", a.resume, "Continue the output file");
-  command.add_flag("--force", a.force,
-                   "Replace existing output files; with --resume, only that of --csv");
+  command.add_flag(
+      "--force", a.force,
+      "Replace existing output files; with --resume, replace only that of --csv, and take "
+      "over the lock of another host");
   command.add_option("--csv", a.csv, "File to which the tables are also written").file_to_write();
   add_wait(command, a.patience);
   add_wide(command, a.layout);

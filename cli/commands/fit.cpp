@@ -139,7 +139,9 @@ std::vector<FitSource> read_sources(const FitArguments& arguments, DataVersion& 
   }
   refuse_options_of_text(arguments);
   if (arguments.observable.empty()) {
-    throw BadInput("a results file needs --observable NAME; jostle info lists them");
+    throw BadInput(
+        "a results file has several curves: name one with --observable NAME; jostle info lists "
+        "them");
   }
   if (arguments.observable.find(',') != std::string::npos) {
     throw BadInput(fmt::format("--observable {}: a command fits one observable; run it for each",
@@ -305,8 +307,9 @@ void add_fit(Command& app, int& code) {
           .add_option("--gaps", a.gaps,
                       "Treatment of a realization without a value: use-others (default), drop-row")
           .one_of({"use-others", "drop-row"});
-  command.add_flag("--independent", a.independent,
-                   "The text file's rows are independent: look for no memory in the residuals");
+  command.add_flag(
+      "--independent", a.independent,
+      "Take the text file's rows as independent: residuals are not tested for correlation");
   const Option resample = command
                               .add_option("--resample", a.resample,
                                           "Additional errors, from resampled realizations: "

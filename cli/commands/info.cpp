@@ -211,7 +211,7 @@ void add_info(Command& app, int& code) {
   command.add_option("file", arguments->file, "The results").required().offers_files({"h5"});
   const Option digest =
       command.add_flag("--digest", arguments->digest,
-                       "Print the SHA-256 of the data alone: equal for equal results");
+                       "Print the SHA-256 of data and scene: equal for equal results of one scene");
   Option json = command.add_flag("--json", arguments->json, "Print the summary as JSON");
   json.excludes(digest);
   Option reseal = command.add_flag(

@@ -69,10 +69,11 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
   table.quantities = {
       single_value("value", state.value, series.units, "mean over taps and realizations"),
       single_value("value_error", error_or_nan(state.error), series.units,
-                   !single               ? "standard error over realizations"
-                   : state.error.known() ? "error from the memories that the taps of the one "
-                                           "realization allow, for Student's t of value_dof"
-                                         : "none: the taps are too few for the memory"),
+                   !single ? "standard error over realizations"
+                   : state.error.known()
+                       ? "error from the memories that the taps of the one "
+                         "realization allow, for Student's t of value_dof"
+                       : "none: the taps are too few for the autocorrelation time"),
       single_value("value_dof", state.error.dof, "1", "degrees of freedom of value_error"),
       single_value("blocked_error", state.blocking.error(), series.units,
                    has_blocked_error ? "standard error by blocking, realizations pooled"
@@ -103,19 +104,18 @@ Table steady_table(const AnalysedSeries& series, const SteadyState& state) {
   table.quantities.push_back(single_value("halves_difference", state.trend.halves.value,
                                           series.units, "second half of the taps less the first"));
   add_errors(table, "halves_difference", state.trend.halves, series.units);
-  table.quantities.push_back(
-      single_value("drift_p", state.trend.tests > 0 ? state.trend.p : not_a_number, "1",
-                   "p-value of no drift, the tests of line and halves together (Bonferroni)"));
+  table.quantities.push_back(single_value(
+      "drift_p", state.trend.tests > 0 ? state.trend.p : not_a_number, "1",
+      "p-value for no drift as the null hypothesis; tests of line and halves, Bonferroni"));
   table.quantities.push_back(single_value(
       "drift_detectable", state.trend.tests > 0 ? state.trend.detectable : not_a_number,
-      series.units,
-      "smallest change over the taps that would have been found with probability 0.8"));
+      series.units, "smallest change over the taps detected with 80 % power"));
   add_blocking(table, series, state.blocking);
   const std::string plateau =
       state.blocking.plateau
           ? fmt::format("from blocks of {} taps",
                         state.blocking.levels[*state.blocking.plateau].block_length)
-          : "none, as the taps are too few for the memory of the series";
+          : "none, as the taps are too few for the autocorrelation time of the series";
   table.notes = {{"observable", series.observable},
                  {"taps", fmt::format("{} to {}", series.first_tap, series.last_tap)},
                  {"realizations", fmt::to_string(state.realizations)},

@@ -159,7 +159,7 @@ class Results(ResultsFile):
         return stored_tables(self.file, self.path)
 
     def digest(self) -> str:
-        """SHA-256 of the data alone, the same for equal runs (jostle info --digest of the file); of live
+        """SHA-256 of data and scene, the same for equal runs of one scene (jostle info --digest of the file); of live
         results, of what there is now."""
         if self.live:
             with joined_with_parts(self.path, self._program) as joined:

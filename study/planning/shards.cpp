@@ -216,7 +216,11 @@ std::vector<std::string> results_files(std::span<const std::string> named) {
       continue;
     }
     const std::vector<std::string> found = files_in(path);
-    if (found.empty()) throw BadInput(fmt::format("{}: no file in it ends in .h5", path));
+    if (found.empty())
+      throw BadInput(fmt::format(
+          "{}: the folder has no .h5 file. If its jobs are still in the queue, repeat the "
+          "command after the first has started",
+          path));
     files.insert(files.end(), found.begin(), found.end());
   }
   return files;

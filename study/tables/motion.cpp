@@ -35,8 +35,8 @@ std::vector<Table> motion_of(const ResultsFile& file, std::span<const std::uint3
   if (!follows_motion(file)) {
     throw BadInput(
         file.path() +
-        ": its scene does not follow the motion of spheres, and what was not followed cannot be "
-        "found afterwards; give a new run's scene the key \"motion\" (docs/reference/analyses.md)");
+        ": its scene has no key \"motion\", so displacements were not recorded: add \"motion\" to "
+        "the scene and run it again (docs/reference/analyses.md)");
   }
   std::vector<Table> tables;
   for (const std::uint32_t point : points) {

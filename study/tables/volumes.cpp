@@ -142,6 +142,9 @@ Table table_of(const ResultsFile& file, const PointScenes& scenes,
                std::span<const std::uint32_t> points, const Sources& sources,
                const AnalysisRequest<VolumesSettings>& request) {
   if (!sources.fault.empty()) throw BadInput(sources.fault);
+  if (sources.all.size() < 2 && !sources.left_out.empty())
+    throw BadInput("fewer than two strengths can be used. Left out: " +
+                   joined(sources.left_out, "; "));
   if (sources.all.size() < 2)
     throw BadInput("needs two strengths at least: a sweep of them, or a ramp in the protocol" +
                    of_chosen_points(file, points));

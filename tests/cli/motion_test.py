@@ -106,7 +106,7 @@ class Motion(Case):
             self.assertTrue((a["observables/point_0001/mean_height"][:] ==
                              b["observables/point_0001/mean_height"][:]).all())
         err = self.jostle("analyse", "without.h5", "motion", expect=BAD_INPUT).stderr
-        self.assertIn("does not follow the motion", err)
+        self.assertIn('its scene has no key "motion"', err)
         self.write(FOLLOWED)
         err = self.run_scene("-o", "without.h5", "--resume", expect=BAD_INPUT).stderr
         self.assertIn("/motion", err)

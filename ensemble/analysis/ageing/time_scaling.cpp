@@ -208,7 +208,7 @@ std::string words(const AgeingExponent& found) {
                        low ? '>' : '<', end_text(low ? found.low_95 : found.high_95));
   }
   const auto misfit_of = [&](double mu) {
-    return found.low_95 <= mu && mu <= found.high_95 ? "not refuted" : "refuted";
+    return found.low_95 <= mu && mu <= found.high_95 ? "not rejected" : "rejected";
   };
   return fmt::format("mu is {} to {} (95 %), no ageing (0) {}, full ageing (1) {}",
                      end_text(found.low_95), end_text(found.high_95), misfit_of(0), misfit_of(1));
@@ -242,8 +242,8 @@ AgeingExponent ageing_exponent(const LogCurves& all,
   // Without a scale, mu compensates much of an existing one, and a test about the best mu has
   // little power. Fitted together the two are so alike, where A is nearly a power, that errors are
   // too small. A scale is accepted if both find it, and excluded if neither does.
-  const TestedChange change{name + " at equal t/t_W^mu", "collapse refuted", "collapse not refuted",
-                            first_of(ages)};
+  const TestedChange change{name + " at equal t/t_W^mu", "collapse rejected",
+                            "collapse not rejected", first_of(ages)};
   const AgeTrend about_mu = scale_that_ages(ages, power, change);
   const AgeTrend beside_mu = scale_that_ages(ages, PowerOfAge(ages, places_of(curves)), change);
   const AgeTrend collapse =
@@ -280,8 +280,8 @@ AgeTrend logarithmic_collapse(const LogCurves& all, const std::vector<std::uint6
   const auto weights = weights_beyond(-curve.slope.cwiseProduct(places_of(curves)), curve.basis);
   if (!weights) return cannot_decide("the curves do not overlap");
   return tested_change(curves, *weights, curve.residuals,
-                       {"ln(1 + t/t_W)/ln t_W at equal " + name, "collapse refuted",
-                        "collapse not refuted", first_of(ages)});
+                       {"ln(1 + t/t_W)/ln t_W at equal " + name, "collapse rejected",
+                        "collapse not rejected", first_of(ages)});
 }
 
 TimeScaling cannot_scale(const std::string& reason) {

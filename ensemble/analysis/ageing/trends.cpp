@@ -38,7 +38,7 @@ std::string power_of(const AgeTrend& found, const TestedChange& words) {
       fmt::format("change of {} from {} to the last", words.quantity, words.first);
   if (std::isnan(found.p)) return change + ": no test, its error is not known";
   if (std::isnan(found.detectable)) {
-    return fmt::format("{}: {}, {}its error is beyond all factors: none would be found", change,
+    return fmt::format("{}: {}, {}the uncertainty is too large to detect any change", change,
                        p_text(found.p),
                        found.p < significant ? "which does not count because " : "");
   }
@@ -79,8 +79,9 @@ AgeTrend agreed(const AgeTrend& first, const AgeTrend& second, std::size_t reali
   found.verdict = verdict(found, found.detectable <= decisive && !finds(first) && !finds(second),
                           realizations, words);
   if (finds(first) != finds(second)) {
-    found.verdict += fmt::format("; only one of the two tests rejects that nothing changes, {}",
-                                 plain_p_text(std::min(first.p, second.p)));
+    found.verdict +=
+        fmt::format("; only one of the two tests rejects the null hypothesis of no change, {}",
+                    plain_p_text(std::min(first.p, second.p)));
   }
   return found;
 }
@@ -131,7 +132,7 @@ AgeTrend trend_of_b(const AgeingLeastSquares& fit) {
   const Eigen::VectorXd weights = beyond_others(column, slopes);
   if (!(weights.squaredNorm() > 0)) return cannot_decide("the curves do not constrain B");
   return tested_change(curves, weights, fit.residuals(fit.best()),
-                       {"B", "collapse refuted", "collapse not refuted"});
+                       {"B", "collapse rejected", "collapse not rejected"});
 }
 
 }  // namespace jostle::inline ensemble

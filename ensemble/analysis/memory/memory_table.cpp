@@ -111,7 +111,7 @@ void add_differences(const Column& observable, const std::string& control, const
   columns.add("difference_p_corrected", axes, corrected, "1",
               "the same for all together, Holm 1979, Scand. J. Statist. 6, 65");
   columns.add("difference_detectable", axes, detectable, observable.units,
-              "smallest difference that would have been found with probability 0.8");
+              "smallest difference detected with 80 % power");
 }
 
 }  // namespace

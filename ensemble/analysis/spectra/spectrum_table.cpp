@@ -192,7 +192,7 @@ Table SpectrumAnalysis::table() const {
                                        : "standard error within the series");
   add("drift_dof", trend.line.error().dof, "1", "degrees of freedom of drift_error");
   add("drift_p", trend.tests > 0 ? trend.p : std::nan(""), "1",
-      "p-value of no drift, the tests of line and halves together (Bonferroni)");
+      "p-value for no drift as the null hypothesis; tests of line and halves, Bonferroni");
   add("drift_share", trend.share, "1",
       "share of the variance in time that the straight line explains");
   table.notes = {{"observable", series_.observable},

@@ -64,7 +64,7 @@ Found collapses(std::uint32_t m, const Paths& paths, int ensembles, std::uint64_
   Found found;
   for (int e = 0; e < ensembles; ++e) {
     const AgeingLeastSquares fit(curves_of(seed + static_cast<std::uint64_t>(e), m, paths));
-    found.add(trend_of_b(fit), "collapse not refuted");
+    found.add(trend_of_b(fit), "collapse not rejected");
   }
   return found;
 }

@@ -61,8 +61,8 @@ struct Rates {
   void add(const LogCurves& curves, double exact) {
     const AgeingExponent found = ageing_exponent(curves, ages, "a");
     if (!std::isnan(found.low_95)) mu.add(found, exact);
-    power.add(found.collapse, "collapse not refuted");
-    logarithmic.add(logarithmic_collapse(curves, ages, "a"), "collapse not refuted");
+    power.add(found.collapse, "collapse not rejected");
+    logarithmic.add(logarithmic_collapse(curves, ages, "a"), "collapse not rejected");
   }
   void print(const std::string& title, std::uint32_t m) const {
     fmt::print("{:12} {:3}{}{}{}\n", title, m, mu.text(), power.text(), logarithmic.text());
@@ -149,10 +149,11 @@ TEST_CASE("Many realizations give mu and words, one age or two give none") {
   CAPTURE(found.verdict, found.collapse.verdict);
   CHECK(std::abs(found.mu - 0.6) < 4 * found.error);
   CHECK(found.error < 0.05);
-  CHECK(found.verdict.find("no ageing (0) refuted, full ageing (1) refuted") != std::string::npos);
-  CHECK(found.collapse.verdict.starts_with("collapse not refuted (change of a at equal t/t_W^mu"));
+  CHECK(found.verdict.find("no ageing (0) rejected, full ageing (1) rejected") !=
+        std::string::npos);
+  CHECK(found.collapse.verdict.starts_with("collapse not rejected (change of a at equal t/t_W^mu"));
   const AgeingExponent full = ageing_exponent(one_path(2, 400, logarithm), ages, "a");
-  CHECK(full.verdict.find("full ageing (1) not refuted; collapse not refuted") !=
+  CHECK(full.verdict.find("full ageing (1) not rejected; collapse not rejected") !=
         std::string::npos);
 
   // From an age of 0 no power and no logarithm of age can be taken.

@@ -22,14 +22,14 @@ AgeTrend tested(double logarithm, double error) {
 
 }  // namespace
 
-TEST_CASE("A small p does not count where its error is beyond all factors") {
+TEST_CASE("A small p does not count where the uncertainty is too large to detect any change") {
   const AgeTrend found = tested(100, 10);
   CHECK(found.p < 0.05);
   CHECK(std::isnan(found.detectable));
   CHECK(found.verdict ==
         "cannot decide with 3 realizations (change of A from the first waiting time to the last: "
-        "p = 0.0099 at the 5 % level, which does not count because its error is beyond all "
-        "factors: none would be found)");
+        "p = 0.0099 at the 5 % level, which does not count because the uncertainty is too large "
+        "to detect any change)");
   CHECK(tested(10, 10).verdict.find("does not count") == std::string::npos);
   CHECK(tested(10, 0.1).verdict.starts_with("A changes"));
 }
@@ -49,7 +49,7 @@ TEST_CASE("Two tests that contradict each other decide nothing, and both are nam
   CHECK(found.p == accepts.p);
   CHECK(found.verdict.starts_with("cannot decide with 3 realizations"));
   CHECK(found.verdict.ends_with(
-      "; only one of the two tests rejects that nothing changes, p = 0.0025"));
+      "; only one of the two tests rejects the null hypothesis of no change, p = 0.0025"));
   CHECK(agreed(accepts, accepts, 3, words).verdict.find("rejects") == std::string::npos);
   CHECK(agreed(rejects, rejects, 3, words).verdict.starts_with("A changes"));
 }
