@@ -84,13 +84,19 @@ Interval central_interval(const std::vector<double>& sorted, double level) {
 }
 
 /// The interval of a bootstrap about the value of all realizations, as much longer as Student's t
-/// exceeds the normal quantile, and times `widening`.
-Interval stretched(Interval interval, double value, double widening, double level, double dof) {
+/// exceeds the normal quantile, and times `widening`; of a positive parameter on a logarithmic
+/// scale.
+Interval stretched(const Interval& interval, const Estimate& estimate, double widening,
+                   double level, double dof) {
   const double factor = widening * student_two_sided(level, dof) / normal_two_sided(level);
+  const double value = estimate.value;
+  if (estimate.parameter.lower >= 0 && interval.lower > 0 && value > 0)
+    return {value * std::pow(interval.lower / value, factor),
+            value * std::pow(interval.upper / value, factor)};
   return {value - factor * (value - interval.lower), value + factor * (interval.upper - value)};
 }
 
-void add_parameter(std::vector<double> values, double value, Resampling kind,
+void add_parameter(std::vector<double> values, const Estimate& estimate, Resampling kind,
                    std::uint32_t realizations, ResampledErrors& errors) {
   const auto n = static_cast<double>(values.size());
   if (values.size() < 2) {
@@ -107,7 +113,8 @@ void add_parameter(std::vector<double> values, double value, Resampling kind,
   std::sort(values.begin(), values.end());
   for (auto [level, intervals] : {std::pair(interval_levels[0], &errors.middle),
                                   std::pair(interval_levels[1], &errors.central)})
-    intervals->push_back(stretched(central_interval(values, level), value, widening, level, dof));
+    intervals->push_back(
+        stretched(central_interval(values, level), estimate, widening, level, dof));
 }
 
 }  // namespace
@@ -140,8 +147,7 @@ ResampledErrors resample(const Model& model, const RealizationCurves& curves, co
       if (parameters) values.push_back((*parameters)[j]);
     }
     result.failed = result.resamples - static_cast<std::uint32_t>(values.size());
-    add_parameter(std::move(values), fit.estimates[j].value, options.kind, curves.realizations,
-                  result);
+    add_parameter(std::move(values), fit.estimates[j], options.kind, curves.realizations, result);
   }
   return result;
 }

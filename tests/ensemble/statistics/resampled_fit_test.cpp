@@ -114,6 +114,7 @@ TEST_CASE("The limits of a bootstrap hold the truth as often as stated, of few r
       const Fit fitted = std::get<Fit>(fit(model, mean_curve(curves), {.profiles = false}));
       const ResampledErrors drawn =
           resample(model, curves, fitted, {.kind = Resampling::bootstrap, .count = 400, .seed = i});
+      CHECK(drawn.central[0].lower > 0);  // theta is positive
       held_68 += drawn.middle[0].lower <= 5 && 5 <= drawn.middle[0].upper;
       held_95 += drawn.central[0].lower <= 5 && 5 <= drawn.central[0].upper;
       ratio += drawn.errors[0] / resample(model, curves, fitted, {}).errors[0] / ensembles;
