@@ -47,6 +47,8 @@ def top_of(points, x, dof):
     scatter = np.mean([error**2 for _, _, error in points])
     misfit = np.sum((y - basis @ (a, b, c))**2) / max(len(points) - 3, 1)
     cov = inverse * max(scatter, misfit)
+    if misfit > scatter:
+        freedom = max(len(points) - 3, 1)
     t = stats.t.ppf(0.975, freedom)
     # b + 2 c x = 0 within t errors: a quadratic in x.
     q = (4 * (c**2 - t**2 * cov[2, 2]), 4 * (b * c - t**2 * cov[1, 2]), b**2 - t**2 * cov[1, 1])
@@ -55,6 +57,15 @@ def top_of(points, x, dof):
         return float(x.min()), float(x.max())
     low, high = sorted(((-q[1] - np.sqrt(under)) / (2 * q[0]), (-q[1] + np.sqrt(under)) / (2 * q[0])))
     return float(max(low, x.min())), float(min(high, x.max()))
+
+
+def most_within(points, inside, outside, dof):
+    """The mean of the points inside less each of those outside, own variances: where all are positive, the largest of
+    the points is one of those inside."""
+    weights = np.zeros((len(outside), len(points)))
+    weights[:, inside] = 1 / len(inside)
+    weights[np.arange(len(outside)), outside] = -1
+    return [contrast(points, row, dof, False) for row in weights]
 
 
 def bell():
@@ -71,10 +82,11 @@ def bell_right():
     return [contrast(bell(), [0, 1 / 3, 1 / 3, 1 / 3, 0, 0, -1], 3, True)]
 
 
-def bell_top():
-    """From 0.05 to 0.25, symmetrical about the printed interval: a parabola does not fit all seven."""
-    points = bell()[:5]
-    return top_of(points, [float(name) for name, _, _ in points], 3)
+def bell_within():
+    """0.10, 0.15 and 0.20 less 0.05, 0.25 and every larger strength."""
+    names = [float(name) for name, _, _ in bell()]
+    assert names[:5] == [0.05, 0.1, 0.15, 0.2, 0.25], names
+    return most_within(bell(), [1, 2, 3], [0, *range(4, len(names))], 3)
 
 
 def alpha_of_strengths():
@@ -114,8 +126,9 @@ def best_lift():
     return [contrast(lifts(), w, 2, False) for w in ([-1, 0, .5, .5, 0], [0, 0, .5, .5, -1])]
 
 
-def best_lift_top():
-    return top_of(lifts(), [.1, .2, .25, .3, .5], 2)
+def best_lift_within():
+    """0.2, 0.25 and 0.3 less 0.1 and 0.5."""
+    return most_within(lifts(), [1, 2, 3], [0, 4], 2)
 
 
 def melted():
@@ -150,25 +163,9 @@ def stated(run, numbers, dof):
 SLOPE = "the spectrum falls as f^-s, s from 1 to 1.5, at eps^(1/2) = {:.3f}"
 
 
-def slope(place):
+def slopes():
     """Slopes of the spectra at four strengths, one variance."""
-    return [stated("pb3", [(SLOPE.format(x), 0) for x in (0.15, 0.2, 0.25, 0.3)], 3)[place]]
-
-
-def slope_15():
-    return slope(0)
-
-
-def slope_20():
-    return slope(1)
-
-
-def slope_25():
-    return slope(2)
-
-
-def slope_30():
-    return slope(3)
+    return stated("pb3", [(SLOPE.format(x), 0) for x in (0.15, 0.2, 0.25, 0.3)], 3)
 
 
 def alpha_hysteresis():
@@ -220,6 +217,13 @@ def inverse_log_at_weak_lift():
     phi = np.array([float(value) for value, _ in pairs])
     error = np.sqrt(np.mean([float(half)**2 for _, half in pairs])) / stats.t.ppf(T68, 2)
     return [Estimate(float(value), float(error), 2 * len(taps)) for value in misfit_of_inverse_log(taps, phi)]
+
+
+def misfit_of_means(beds, misfit):
+    """Estimates of the misfit of a law to the means of beds [tap, bed]: beds differ in their levels, which are none."""
+    means = beds.mean(axis=1)
+    fitted = means - misfit
+    return [Estimate.of(row) for row in beds - beds.mean(axis=0) - (fitted - fitted.mean())[:, None]]
 
 
 def misfit_of_inverse_log(taps, phi, log_taus=np.arange(-4, 8, 0.25)):

@@ -2,8 +2,8 @@
 import numpy as np
 from scipy import stats
 
-from contrasts import contrast, top_of
-from distributions import label, numbers, point_of, series, steady
+from contrasts import contrast, misfit_of_means, most_within
+from distributions import kept_taps, label, numbers, point_of, series, steady
 from verdicts import Estimate
 
 SPHERE = np.pi / 6
@@ -64,6 +64,23 @@ def floor_stop_later_at_250():
     return window("floor_15", 3, 250)
 
 
+def stretched_exponential_fits():
+    """The means of the beds at each kept tap from 1 on less the stretched exponential fitted to them, beyond the levels
+    of the beds: lift 0.25, 0 to 15 d."""
+    taps = [tap for tap in kept_taps("dr6-windows", 1) if tap >= 1]
+    beds = np.array([series("dr6-windows", 1, "floor_15", tap) for tap in taps])
+    return misfit_of_means(beds, misfit_of_stretched_exponential(np.array(taps, float), beds.mean(axis=1)))
+
+
+def misfit_of_stretched_exponential(taps, phi):
+    """Residuals of least squares: tau and beta from a grid, both levels linear."""
+    def residuals(tau, beta):
+        basis = np.column_stack([np.ones_like(taps), np.exp(-(taps / tau)**beta)])
+        return phi - basis @ np.linalg.lstsq(basis, phi, rcond=None)[0]
+    return min((residuals(tau, beta) for tau in np.exp(np.arange(-1, 12, 0.1)) for beta in np.arange(0.1, 1.55, 0.05)),
+               key=lambda misfit: np.sum(misfit**2))
+
+
 def middle_at_250():
     return window("bulk_fraction", 1, 250)
 
@@ -76,6 +93,14 @@ def layer_offsets(tap, layers=(2, 3)):
 
 def hcp_peaks():
     return layer_offsets(250)
+
+
+def hcp_peaks_grow():
+    """How many of the lowest four peaks of n(y/d) are within 0.1 d of hcp heights, tap 250 less tap 0."""
+    def near(tap):
+        return sum(np.abs(numbers("dr6-windows", 1, f"layers/peak_{k}", tap) - (0.5 + (k - 1) * (2 / 3)**0.5)) < 0.1
+                   for k in range(1, 5))
+    return [Estimate.of(near(250) - near(0))]
 
 
 def whole_bed(point):
@@ -93,9 +118,9 @@ MOVES = "pb-move-settings"   # its first point is [PB]'s move: theta_0 = pi/4, d
 
 
 def gain_of_move(point, setting):
-    """The gain of Phi_c within 30 taps, [bed]."""
+    """The gain of Phi_c from tap 1 to 30, [bed]: the first tap loosens the pour."""
     assert label(MOVES, point).startswith(setting), label(MOVES, point)
-    return series(MOVES, point, "corrected_fraction", 30) - series(MOVES, point, "corrected_fraction", 0)
+    return series(MOVES, point, "corrected_fraction", 30) - series(MOVES, point, "corrected_fraction", 1)
 
 
 def gain_above(*points_and_settings):
@@ -180,13 +205,6 @@ def neighbour_average():
     return [Estimate.of(numbers("dr-pours", ROUGH, "all/neighbours", 0))]
 
 
-def normal_r2():
-    """The 95 % interval of R2 of those fits."""
-    found = Estimate.of(numbers("dr-pours", ROUGH, "all/normal_R2", 0))
-    half = found.error * stats.t.ppf(0.975, found.dof)
-    return found.value - half, found.value + half
-
-
 def spread_of_free_volumes():
     """The 95 % interval of the deviation of beds' mean free volumes, as a share of their mean."""
     values = numbers("dr-pours", ROUGH, "voronoi/mean_free_volume", 0)
@@ -233,6 +251,14 @@ def voids_change(points):
 
 def weak_voids_change():
     return voids_change(WEAK)
+
+
+def voids_change_as_printed():
+    """P0's change for the rise of the fraction that the paper prints, 0.584 to 0.606, by each bed's own ratio."""
+    rise = np.concatenate([numbers(VOIDS, point, "profile/phi_region", 4000) -
+                           numbers(VOIDS, point, "profile/phi_region", 0) for point in WEAK])
+    change = void_probability(WEAK, 4000) - void_probability(WEAK, 0)
+    return [Estimate.of(change / rise * (0.606 - 0.584))]
 
 
 def strong_voids_change():
@@ -298,9 +324,11 @@ def best_crystal():
     return [contrast(points, w, dof, False) for w in ([-1, 0, .5, .5, 0, 0], [0, 0, .5, .5, 0, -1])]
 
 
-def best_crystal_top():
+def best_crystal_within():
+    """0.2, 0.25 and 0.3 less 0.1, 0.4 and 0.5."""
     points, dof = melted_crystals()
-    return top_of(points, LIFTS, dof)
+    return most_within(points, [LIFTS.index(lift) for lift in (0.2, 0.25, 0.3)],
+                       [LIFTS.index(lift) for lift in (0.1, 0.4, 0.5)], dof)
 
 
 def rise_per_e_fold(point, first, last):

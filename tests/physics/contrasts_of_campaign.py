@@ -110,6 +110,53 @@ def full_third_gap():
     return layers_at_walls((2.35, 3.25), 2.75)
 
 
+def full_fourth_gap():
+    return layers_at_walls((3.25, 4.15), 3.65)
+
+
+def full_fifth_gap():
+    return layers_at_walls((4.15, 5.05), 4.55)
+
+
+def full_pores_last():
+    """Sets of four neighbours with their centres in the box, eps = 0.01, the densest of four strengths."""
+    return [Estimate.of(numbers_at(0.01, "pores/four_centres"))]
+
+
+NU_TAPS = (1, 10, 100, 1000, 4000)
+
+
+def full_nu_falls():
+    """nu at each of taps 1, 10, 100 and 1000 less that at the next of them or 4000, at each strength."""
+    return [Estimate.of(numbers_at(strength, "pores/nu", first) - numbers_at(strength, "pores/nu", last))
+            for strength in STRENGTHS for first, last in zip(NU_TAPS, NU_TAPS[1:])]
+
+
+def full_nu_rises_first():
+    """nu at tap 1 less that at tap 0."""
+    return [Estimate.of(numbers_at(strength, "pores/nu", 1) - numbers_at(strength, "pores/nu", 0))
+            for strength in STRENGTHS]
+
+
+def full_tail_misfits():
+    """ln of rho_v less a line in v, eps = 0.01, taps 0, 99 and 4000: means over 0.1 of v from 0.1 to where it is known to
+    15 %, lines weighted by the errors, which are added within a mean."""
+    point, found = point_at(0.01), []
+    for tap in (0, 99, LAST):
+        xi, mean, error = distribution(CAMPAIGN, point, "pores/rho_v")[tap]
+        known = (xi**3 >= 0.1) & (error < 0.15 * mean)
+        v, weight = xi[known]**3, mean[known] / error[known]
+        basis = np.column_stack([np.ones_like(v), v])
+        fitted = basis @ np.linalg.lstsq(basis * weight[:, None], np.log(mean[known]) * weight, rcond=None)[0]
+        misfit = np.log(mean[known]) - fitted
+        for low in np.arange(0.1, v[-1], 0.1):
+            inside = (v >= low) & (v < low + 0.1)
+            if inside.any():
+                found.append(Estimate(float(misfit[inside].mean()), float((1 / weight[inside]).mean()),
+                                      beds_of_point(CAMPAIGN, point) - 1))
+    return found
+
+
 def alpha_at(strength):
     """10^3 alpha R, [bed]."""
     return 1e3 * numbers_at(strength, "profile/alpha")

@@ -7,9 +7,9 @@ import numpy as np
 from pictures import COLOURS, Picture, curves_of
 from reduce import REDUCED, read_table
 from special_drawings import (PRINTED_LABEL, draw_ageing, draw_crystals, draw_densities, draw_free_volumes, draw_growth,
-                              draw_increases, draw_layers, draw_map, draw_neighbours, draw_pores, draw_pours,
+                              draw_increases, draw_layers, draw_map, draw_neighbours, draw_parameters, draw_pores, draw_pours,
                               draw_snapshots, draw_spectra, draw_steady_crystals, draw_surface, draw_tails,
-                              draw_transverse, draw_vertical, draw_void_probability)
+                              draw_transverse, draw_two_taps, draw_vertical, draw_void_probability)
 from scores import (COMPATIBLE, DECIDED, NOT, QUALITATIVE, REPRODUCED, SILENT, UNDERPOWERED)
 
 matplotlib.use("svg")
@@ -25,7 +25,6 @@ PANELS = {
              ("pb4-hysteresis", 1, Picture(STRENGTH, "Phi_c"))]],
     "pb-moves": [[("pb-moves", 1, Picture("d_max, diameters", "10^4 gain of Phi_c", across=True, log="x"))]],
     "pb-sides": [[("pb-sides", 1, Picture(TAPS, "Phi_c", across=True, log="x"))]],
-    "dr2": [[("dr2-wide", 1, Picture(TAPS, PHI, across=True, log="x"))]],
     "dr3": [[("dr3", 1, Picture(PHI, "N_c", columns="N_c of the region", x_column=2))]],
     "dr4": [[("dr4", 1, Picture(TAPS, PHI, across=True, log="x"))],
             [("dr4", 1, Picture("lift, diameters", PHI, columns="^400$"))]],
@@ -79,10 +78,10 @@ def save(figure, target):
 
 
 # figure: how many panels, and what draws them.
-SPECIAL = {"pb2": (2, draw_growth), "pb3": (2, draw_spectra), "pb5": (2, draw_ageing), "pb6": (1, draw_vertical),
+SPECIAL = {"pb2": (2, draw_growth), "pb2-laws": (2, draw_parameters), "pb3": (2, draw_spectra), "pb5": (2, draw_ageing), "pb6": (1, draw_vertical),
            "pb7": (1, draw_transverse), "pb8": (2, draw_increases),
            "pb9": (1, draw_void_probability), "pb10": (3, draw_pores), "dr1": (2, draw_snapshots),
-           "dr5": (2, draw_crystals), "dr6": (4, draw_layers), "dr7": (1, draw_pours), "dr8": (1, draw_neighbours),
+           "dr2": (1, draw_two_taps), "dr5": (2, draw_crystals), "dr6": (4, draw_layers), "dr7": (1, draw_pours), "dr8": (1, draw_neighbours),
            "dr9": (1, draw_free_volumes), "dr15": (1, draw_map)}
 
 

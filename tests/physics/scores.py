@@ -11,9 +11,10 @@ import contrasts
 import contrasts_of_beds
 import contrasts_of_campaign
 import contrasts_of_growth
+import contrasts_of_lifts
 import contrasts_of_taps
 from reduce import REDUCED, read_table
-from verdicts import LEVEL, Estimate, detectable, p_beyond, p_two_sided, p_within, share_above
+from verdicts import LEVEL, Estimate, detectable, limits_text, p_beyond, p_two_sided, p_within, share_above
 
 REPRODUCED, COMPATIBLE, QUALITATIVE = "reproduced", "compatible", "qualitatively"
 NOT, UNDERPOWERED, SILENT = "not reproduced", "underpowered", "not in the paper"
@@ -73,7 +74,7 @@ def of_contrast(claim):
     """The estimates of the contrast that a claim names as its source."""
     name = claim.source[1:]
     module = next(module for module in (contrasts, contrasts_of_beds, contrasts_of_campaign, contrasts_of_growth,
-                                        contrasts_of_taps) if hasattr(module, name))
+                                        contrasts_of_lifts, contrasts_of_taps) if hasattr(module, name))
     return getattr(module, name)()
 
 
@@ -122,7 +123,7 @@ def within(claim, estimates):
     near = max(p_within(estimate, claim.margin) for estimate in estimates)
     far = min(1.0, len(estimates) * min(p_beyond(estimate, claim.margin) for estimate in estimates))
     status = REPRODUCED if near < LEVEL else NOT if far < LEVEL else UNDERPOWERED
-    return status, min(near, far), f"within {claim.margin:g} or beyond"
+    return status, min(near, far), f"equivalence test, margin {claim.margin:g}"
 
 
 def of_printed(claim, estimate):
@@ -151,10 +152,10 @@ def score(claim):
         status = (COMPATIBLE if claim.kind == "refute" else UNDERPOWERED) if claim.p >= LEVEL else (
             NOT if claim.kind == "refute" or not claim.favours else REPRODUCED)
         found = claim.note or row_of(claim)[0]
-        return Score(claim, status, found, "test of the program", claim.p)
+        return Score(claim, status, found, "test of the program" if claim.run else claim.source, claim.p)
     if claim.kind == "interval":
         low, high = claim.bounds or of_contrast(claim)
-        return Score(claim, of_interval(claim, low, high), f"{low:.4g} to {high:.4g}" if high > low else f"{low:.4g}",
+        return Score(claim, of_interval(claim, low, high), limits_text(low, high) if high > low else f"{low:.4g}",
                      "95 % interval" if high > low else "value")
     if claim.kind in ("shown", "seen"):
         return Score(claim, REPRODUCED if claim.kind == "shown" else QUALITATIVE, claim.note,
@@ -166,7 +167,9 @@ def score(claim):
         return Score(claim, status, found, test, p, difference.value / difference.error,
                      (claim.margin + detectable(difference)) / difference.error)
     if claim.kind == "within" and np.isfinite(claim.printed):
-        estimates = [dataclasses.replace(e, value=e.value - claim.printed) for e in estimates]
+        # A margin that is the printed error itself counts it already.
+        error = claim.printed_error if claim.printed_error < claim.margin else 0.0
+        estimates = [e.from_printed(claim.printed, error) for e in estimates]
     status, p, test = (positive if claim.kind == "positive" else within)(claim, estimates)
     distance = np.nan
     if np.isfinite(claim.printed) and claim.printed_error > 0:

@@ -3,11 +3,12 @@ import numpy as np
 from matplotlib.collections import EllipseCollection
 from scipy import optimize, stats
 
+import contrasts_of_lifts as two_taps
 from contrasts import misfit_of_inverse_log
 from contrasts_of_beds import CRYSTAL, FRICTIONS, LIFTS, ROUGH, from_crystal, whole_bed
 from contrasts_of_campaign import CAMPAIGN, DRAWN, LAST, STRENGTHS, WIDTH, numbers_at, point_at
-from contrasts_of_growth import growth
-from distributions import beds_of_point, distribution, label, numbers, series, spectrum, steady
+from contrasts_of_growth import growth, limits
+from distributions import beds_of_point, distribution, kept_taps, label, numbers, series, spectrum, steady
 from pictures import COLOURS, value_of
 from reduce import REDUCED, read_table
 from verdicts import Estimate
@@ -17,6 +18,33 @@ LAYER = (2 / 3)**0.5
 FLOOR_15 = "packing fraction, 0 to 15 d"
 PRINTED_LABEL = "the paper"
 PRINTED = ((0, 0.567), (50, 0.578), (250, 0.597))
+
+
+def draw_parameters(axes):
+    """[PB] eqs. 3 and 4: 95 % limits of X_inf and tau against eps^(1/2), and Phi_b of the last thousand taps."""
+    strengths = np.sqrt(STRENGTHS)
+    for panel, name in zip(axes, ("X_inf", "tau")):
+        for x, (low, high) in zip(strengths, (limits(strength, name) for strength in STRENGTHS)):
+            top = high if np.isfinite(high) else 1.2 * low
+            panel.plot([x, x], [low, top], color=COLOURS[0])
+            panel.plot(x, top, "_" if np.isfinite(high) else "^", color=COLOURS[0])
+            panel.plot(x, low, "_", color=COLOURS[0], label="95 % limits (arrow: none)" if x == strengths[0] else None)
+        panel.set(xlabel="eps^(1/2)", ylabel=f"{name} of eq. 3", xscale="log")
+    values = [steady(CAMPAIGN, point_at(strength), "bottom_fraction").mean() for strength in STRENGTHS]
+    axes[0].plot(strengths, values, "o", color=COLOURS[1], markersize=3, label="Phi_b, taps 3001 to 4000")
+    axes[0].legend()
+    axes[1].set(yscale="log")
+
+
+def draw_two_taps(axes):
+    """[DR] 2: packing fraction against taps, 0 to 15 d, lifts and held dilations of the same beds."""
+    for k, (point, name) in enumerate(((two_taps.LIFT, "lift 0.25"), (two_taps.HELD, "held dilation 1.025"))):
+        taps = [tap for tap in kept_taps(two_taps.RUN, point) if tap > 0]
+        beds = [Estimate.of(series(two_taps.RUN, point, two_taps.WINDOW, tap)) for tap in taps]
+        axes[0].errorbar(taps, [bed.value for bed in beds], yerr=[bed.half_width() for bed in beds], marker=MARKS[k],
+                         color=COLOURS[k], markersize=3, capsize=1, elinewidth=.6, label=name)
+    axes[0].set(xlabel="taps", ylabel=FLOOR_15, xscale="log")
+    axes[0].legend()
 
 
 def draw_profile(panel, quantity, mark_fits):

@@ -13,7 +13,8 @@ from page_text import table
 from paper_runs import table_of
 from published import FIGURES, NO_DATA
 from reduce import REDUCED, read_table
-from scores import DECIDED, STATUS, all_scores, counts, false_discoveries, status_of_figure
+from scores import (DECIDED, SILENT, STATUS, UNDERPOWERED, all_scores, counts, false_discoveries,
+                    status_of_figure)
 from verdicts import p_text
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -30,9 +31,15 @@ def verdicts(scores):
     rows = []
     for s in scores:
         marks = " (post hoc)" * s.claim.post_hoc + (" (reduced)" if not s.claim.full else "")
-        found = s.found if len(s.found) < 70 else s.found[:67].rsplit(" ", 1)[0] + " ..."
-        rows.append([s.claim.text + marks, found.replace("|", "/"), s.test, p_text(s.p), f"**{s.status}**"])
+        rows.append([s.claim.text + marks, shortened(s.found, 100).replace("|", "/"), s.test, p_text(s.p), f"**{s.status}**"])
     return table(["statement", "found", "test", "p", "status"], rows)
+
+
+def shortened(text, longest):
+    """A list of results, cut after a whole one."""
+    if len(text) <= longest or ", " not in text:
+        return text
+    return text[:longest].rsplit(", ", 1)[0] + ", ..."
 
 
 def notes_of(run):
@@ -78,7 +85,7 @@ def page_of(name, figure, scores, printed):
         parts += ["## The paper's statements", verdicts(papers)]
     parts += ["## Readings", wrapped(figure.silence)]
     if own:
-        parts += ["## Own questions, outside the score", verdicts(own)]
+        parts += ["## Additional tests, not scored", verdicts(own)]
     parts += ["## Runs", f"Scene: [{figure.scene}](../../config/scenes/{figure.scene}.json)"]
     for run in figure.runs:
         notes = notes_of(run)
@@ -109,13 +116,14 @@ WORDS = """A statement is *reproduced* if its test at 5 % shows it, and *not rep
 of a change is found and the printed size is rejected, or single beds show the change. A figure is called qualitative if
 some, at most half, of its decided statements fail or are qualitative, and not reproduced if more do. The table counts
 the statements of a figure that are shown (reproduced, compatible, qualitatively), that failed (not reproduced) and that
-are open. *Underpowered*: the data decide nothing. Each row states its margin and is marked where it is post hoc.
+are open. *Underpowered*: the data decide nothing, or there are none yet. *Not in the paper*: the paper prints too
+little for a test; such a row is not counted. Each row states its margin and is marked where it is post hoc.
 """
 
 
 def overview_page(scores):
     found = counts(scores)
-    total = sum(found.values())
+    total = sum(found.values()) - found[SILENT]
     decided = sum(found[word] for word in DECIDED)
     kept, tested, expected = false_discoveries([s for s in scores if not s.claim.own])
     rows = []
@@ -127,14 +135,14 @@ def overview_page(scores):
         key = next(s for s in papers if s.claim.text == figure.key)
         failed = sum(s.status == "not reproduced" for s in papers)
         shown = sum(s.status in DECIDED for s in papers) - failed
-        standings = f"{shown} / {failed} / {len(papers) - shown - failed}"
-        value = key.found if len(key.found) < 40 else key.found[:36].rsplit(" ", 1)[0] + " ..."
+        standings = f"{shown} / {failed} / {sum(s.status == UNDERPOWERED for s in papers)}"
+        value = shortened(key.found, 40)
         thumbnail = f'<img src="validation/{name}.svg" width="120" alt="{figure.title}">'
         rows.append([f"[{figure.title}](validation/{name}.md)", thumbnail, f"**{status_of_figure(mine)}**",
                      standings, f"{key.claim.text}: {value}", figure.size, figure.taps,
                      figure.realizations])
-    scoreboard = ", ".join(f"{found[word]} {word}" for word in STATUS)
-    post_hoc = sum(s.claim.post_hoc for s in scores if not s.claim.own)
+    scoreboard = ", ".join(f"{found[word]} {word}" for word in STATUS if word != SILENT)
+    post_hoc = sum(s.claim.post_hoc for s in scores if not s.claim.own and s.status != SILENT)
     parts = [HEAD.strip(), wrapped(f"**{decided} of {total} statements are decided ({100 * decided / total:.0f} %)**: "
                                    f"{scoreboard}. {post_hoc} of the {total} were tested post hoc: their contrasts, "
                                    "margins or pooled variances were chosen after a look at the data."), "![Overview of all statements](validation/overview.svg)",
@@ -143,13 +151,13 @@ def overview_page(scores):
              wrapped(f"{kept} of {tested} statements decided by a p-value remain with the false discovery rate "
                      "held at 5 % (Benjamini and Hochberg 1995); the expected share of false "
                      f"decisions is at most {100 * expected:.0f} %."),
-             wrapped("The runs of about half of the figures are no longer at hand: their reduced data are the numbers that an "
+             wrapped("The raw runs of about half of the figures were not kept: their reduced data are the numbers that an "
                      "earlier page printed (means and errors over realizations). DR 1 and 5 to 9, PB 6 to 9, the settings "
                      "of the move, the spectra of PB 3 and the number of pores of PB 10 have data of each bed. A revision "
-                     "that the history does not hold was a working copy. " + NO_DATA),
+                     "that git does not have was an uncommitted working copy. " + NO_DATA),
              wrapped("Not scored, because the papers do not state them: steadiness by a test of drift, one straight "
                      "line in DR 3, and KWW exponents of a few hundred taps beside laws fitted to many thousands."),
-             wrapped("Ageing counts as one statement per lag: its single steps are own questions. The rise of sigma_Z with "
+             wrapped("Ageing counts as one statement per lag: the steps from one age to the next are additional tests. The rise of sigma_Z with "
                      "eps^(1/2) is part of its proportionality and not counted beside it."),
              "Not scored: [snapshots of DR 1](validation/dr1.md), [both engines on the same "
              "beds](validation/both-engines.md)."]
